@@ -28,7 +28,7 @@ constexpr const char* kDocument = R"(<materialx version="1.38" fileprefix="maps/
     <input name="base_color" type="color3" nodegraph="NG" output="out"/>
     <input name="specular_roughness" type="float" value="0.5"/>
     <input name="thin_film_thickness" type="float" value="0.4" unit="micron" unittype="distance"/>
-    <input name="specular_color" type="float" value="0.5"/>
+    <input name="specular_color" type="color3" value="0.5, 0.5, 0.5"/>
   </standard_surface>
   <surfacematerial name="Paint" type="material">
     <input name="surfaceshader" type="surfaceshader" nodename="paint"/>
@@ -288,6 +288,101 @@ TEST(UnlitSurfaces, AreWhatTheirFormulaSays) {
   EXPECT_EQ(color->profile, "materialx");
   const std::array<double, 4> expected = {10, 15, 20, 0.75};
   for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
+}
+
+/// A variant's inputs that an unlit surface lacks are other surfaces'.
+TEST(UnlitSurfaces, TakeVariants) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <surface_unlit name="s" type="surfaceshader">
+    <input name="emission_color" type="color3" value="2, 3, 4"/>
+  </surface_unlit>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+  <variantset name="paint">
+    <variant name="red">
+      <input name="emission_color" type="color3" value="1, 0, 0"/>
+      <input name="base_color" type="color3" value="1, 0, 0"/>
+    </variant>
+  </variantset>
+</materialx>)",
+                                        "unlit.mtlx", {}, messages);
+  ASSERT_TRUE(messages.empty()) << messages[0].text;
+  ASSERT_EQ(scene.materialCount(), 2U);
+  const auto color = evaluate(scene, 1, "[{}]", Engine::Double, {}, {}, messages);
+  ASSERT_TRUE(color) << (messages.empty() ? "" : messages[0].text);
+  const std::array<double, 4> expected = {1, 0, 0, 1};
+  for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
+}
+
+/// A surface of a definition may stand behind its namespace.
+TEST(UnlitSurfaces, StandInNamespaces) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39" namespace="q">
+  <nodedef name="ND_srf" node="srf">
+    <input name="tint" type="color3" value="1, 1, 1"/>
+    <output name="out" type="surfaceshader"/>
+  </nodedef>
+  <nodegraph name="NG_srf" nodedef="ND_srf">
+    <surface_unlit name="s" type="surfaceshader">
+      <input name="emission_color" type="color3" interfacename="tint"/>
+    </surface_unlit>
+    <output name="out" type="surfaceshader" nodename="s"/>
+  </nodegraph>
+  <q:srf name="s" type="surfaceshader"><input name="tint" type="color3" value="2, 3, 4"/></q:srf>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)",
+                                        "unlit.mtlx", {}, messages);
+  ASSERT_TRUE(messages.empty()) << messages[0].text;
+  const auto color = evaluate(scene, 0, "[{}]", Engine::Double, {}, {}, messages);
+  ASSERT_TRUE(color) << (messages.empty() ? "" : messages[0].text);
+  const std::array<double, 3> expected = {2, 3, 4};
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
+}
+
+/// A definition that is a surface_unlit is no closure for glTF.
+TEST(UnlitSurfaces, AreWrittenToGltfByTheirDefinition) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <nodedef name="ND_srf" node="srf">
+    <input name="tint" type="color3" value="1, 1, 1"/>
+    <output name="out" type="surfaceshader"/>
+  </nodedef>
+  <nodegraph name="NG_srf" nodedef="ND_srf">
+    <surface_unlit name="s" type="surfaceshader">
+      <input name="emission_color" type="color3" interfacename="tint"/>
+    </surface_unlit>
+    <output name="out" type="surfaceshader" nodename="s"/>
+  </nodegraph>
+  <srf name="s" type="surfaceshader"><input name="tint" type="color3" value="0.25, 0.5, 0.75"/></srf>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)",
+                                        "unlit.mtlx", {}, messages);
+  const std::string gltf = toGltf(scene, {}, 4, {}, messages);
+  EXPECT_TRUE(messages.empty()) << messages[0].text;
+  EXPECT_NE(gltf.find("KHR_materials_unlit"), std::string::npos);
+  const Scene again = Scene::fromMemory(gltf, "unlit.gltf", {}, messages);
+  const auto color = evaluate(again, 0, "[{}]", Engine::Double, {}, {}, messages);
+  ASSERT_TRUE(color) << (messages.empty() ? "" : messages[0].text);
+  const std::array<double, 4> expected = {0.25, 0.5, 0.75, 1};
+  for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
+}
+
+/// What is wrong with an image is told where its name stands.
+TEST(ImagesOfDocuments, AreMissedAtTheirPlace) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <image name="i" type="color3">
+    <input name="file" type="filename" value="none.png"/>
+  </image>
+  <surface_unlit name="s" type="surfaceshader"><input name="emission_color" type="color3" nodename="i"/></surface_unlit>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)",
+                                        "image.mtlx", {}, messages);
+  ASSERT_TRUE(evaluate(scene, 0, "[{}]", Engine::Double, {}, {}, messages));
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].code, "image-missing");
+  EXPECT_EQ(messages[0].line, 3U);
+  EXPECT_EQ(messages[0].column, 6U);
 }
 
 /// A procedural's output is a node's: of a nodegraph's own number there is one.

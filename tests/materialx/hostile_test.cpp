@@ -160,6 +160,15 @@ TEST(MaterialXHostile, circles) {
                      "<output name=\"out\" type=\"float\" nodename=\"top\"/>"))
           .find("cycle"),
       std::string::npos);
+  // Surfaces whose definitions are each other.
+  std::string surfaces = "<a name=\"s\" type=\"surfaceshader\"/>";
+  for (const auto& [own, other] : {std::pair("a", "b"), std::pair("b", "a")})
+    surfaces += fmt::format(
+        "<nodedef name=\"ND_{0}\" node=\"{0}\"><output name=\"out\" type=\"surfaceshader\"/></nodedef>"
+        "<nodegraph name=\"NG_{0}\" nodedef=\"ND_{0}\"><{1} name=\"x\" type=\"surfaceshader\"/>"
+        "<output name=\"out\" type=\"surfaceshader\" nodename=\"x\"/></nodegraph>",
+        own, other);
+  EXPECT_NE(codesOf(inDocument(surfaces)).find("cycle"), std::string::npos);
 }
 
 /// Names that no target takes, and none at all.

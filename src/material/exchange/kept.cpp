@@ -106,7 +106,8 @@ std::string_view unitAt(const Element& root, const Element& node, std::string_vi
   return port == nullptr ? std::string_view() : port->get("unit");
 }
 
-void putNumber(Element& input, const graph::Parameter& parameter, std::string_view unit) {
+void putNumber(Element& input, const graph::Parameter& parameter, const materialx::Units& units,
+               std::string_view unit) {
   const std::vector<double> numbers = parameter.numbers();
   if (ir::isMatrix(parameter.type)) {
     if (materialx::numbersOf(input.get("value")) != numbers)
@@ -116,31 +117,30 @@ void putNumber(Element& input, const graph::Parameter& parameter, std::string_vi
   const std::optional<ir::Type> type = materialx::typeOf(input.get("type"));
   if (!type) return;
   const auto count = static_cast<ptrdiff_t>(numbers.size());
-  const Result<ir::Components> read = materialx::valueOf(input, *type, unit);
-  const bool spread = *type != parameter.type;  // one number for all components
-  const auto same = [&](double x) { return x == numbers[0]; };
-  const bool one = !spread || std::all_of(numbers.begin(), numbers.end(), same);
-  if (read && one && std::equal(numbers.begin(), numbers.begin() + (spread ? 1 : count), read->begin()))
-    return;
-  if (!one) input.set("type", parameter.type == ir::Type::Vec4 ? "color4" : "color3");
+  const Result<ir::Components> read = materialx::valueOf(input, *type, units, unit);
+  if (read && std::equal(numbers.begin(), numbers.begin() + count, read->begin())) return;
   ir::Components value{};
   std::copy(numbers.begin(), numbers.end(), value.begin());
   std::erase_if(input.attributes,
                 [](const auto& had) { return had.first == "unit" || had.first == "unittype"; });
   if (!unit.empty()) input.set("unit", std::string(unit));
   if (input.get("type").starts_with("color")) input.set("colorspace", "lin_rec709");
-  input.set("value", valueText(one ? *type : parameter.type, value));
+  input.set("value", valueText(*type, value));
 }
 
 }  // namespace
 
 void putNumbers(Element& root, const graph::Graph& edited) {
+  Diagnostics said;  // where the document is read
+  materialx::Units units;
+  units.add(root, said);
   for (const graph::Parameter& parameter : edited.parameters) {
     if (parameter.pointer.empty()) continue;
     Element* input = elementAt(root, parameter.pointer);
     if (input == nullptr || input->find("value") == nullptr) continue;
     const Element* node = elementAt(root, parameter.pointer.substr(0, parameter.pointer.rfind('/')));
-    putNumber(*input, parameter, node == nullptr ? std::string_view() : unitAt(root, *node, input->name()));
+    putNumber(*input, parameter, units,
+              node == nullptr ? std::string_view() : unitAt(root, *node, input->name()));
   }
 }
 

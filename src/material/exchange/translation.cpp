@@ -93,8 +93,9 @@ Term grey(double x) { return {"color3", {x, x, x}}; }
 /// One surface: its inputs, and nodes for what cannot be computed.
 class Formulas {
 public:
-  Formulas(const Element& surface, materialx::NameSet& names, std::vector<Element>& beside, Diagnostics& said)
-      : surface_(surface), names_(names), beside_(beside), said_(said) {}
+  Formulas(const Element& surface, const materialx::Units& units, materialx::NameSet& names,
+           std::vector<Element>& beside, Diagnostics& said)
+      : surface_(surface), units_(units), names_(names), beside_(beside), said_(said) {}
 
   Term get(std::string_view name) {
     used_.insert(name);
@@ -108,7 +109,7 @@ public:
     }
     const std::optional<ir::Type> type = materialx::typeOf(given.type);
     if (!term.known() || input->find("value") == nullptr || !type) return term;
-    const Result<ir::Components> read = materialx::valueOf(*input, *type);
+    const Result<ir::Components> read = materialx::valueOf(*input, *type, units_);
     if (!read) {
       said_.insert(said_.end(), read.error().begin(), read.error().end());
       return term;
@@ -280,6 +281,7 @@ private:
   }
 
   const Element& surface_;
+  const materialx::Units& units_;
   materialx::NameSet& names_;
   std::vector<Element>& beside_;
   Diagnostics& said_;
@@ -477,6 +479,8 @@ bool isSame(const Element& a, const std::vector<Element>& beside_a, const Elemen
 class VariantTranslation {
 public:
   VariantTranslation(const Element& root, std::string_view as, Diagnostics& said) : as_(as), said_(said) {
+    Diagnostics elsewhere;  // said where the document is read
+    units_.add(root, elsewhere);
     for (const Element& child : root.children)
       if (child.category == "variantset") sets_.push_back(child);
     for (const Element& set : sets_)
@@ -484,6 +488,7 @@ public:
         if (variant.category == "variant") changed_.try_emplace(&variant);
   }
   bool any() const { return !sets_.empty(); }
+  const materialx::Units& units() const { return units_; }
 
   /// `to`, made by `formulas` with the nodes beside it; `names` are those before that.
   void surface(const Element& from, Element& to, const Formulas& formulas, const std::vector<Element>& beside,
@@ -516,6 +521,7 @@ private:
 
   std::string_view as_;
   Diagnostics& said_;
+  materialx::Units units_;
   std::vector<Element> sets_;
   std::map<const Element*, Changed> changed_;  ///< looked up, never walked
 };
@@ -550,7 +556,7 @@ void VariantTranslation::surface(const Element& from, Element& to, const Formula
       materialx::NameSet own_names = names;
       std::vector<Element> own_beside, inputs;
       Diagnostics own_said;
-      Formulas own(varied, own_names, own_beside, own_said);
+      Formulas own(varied, units_, own_names, own_beside, own_said);
       translateBy(own, as_);
       const std::vector<Element> made = own.finish(as_);
       for (Diagnostic& one : own_said) {
@@ -642,7 +648,7 @@ size_t translateIn(Element& owner, std::string_view as, VariantTranslation& vari
     ++count;
     std::vector<Element> beside;
     const materialx::NameSet before = variants.any() ? names : materialx::NameSet();
-    Formulas formulas(child, names, beside, said);
+    Formulas formulas(child, variants.units(), names, beside, said);
     translateBy(formulas, as);
     Element made;
     made.category = as;

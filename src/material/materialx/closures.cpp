@@ -91,7 +91,7 @@ std::optional<Refusal> refused(const Element& element) {
 }
 
 bool Patterns::givesClosure(const Element& node) const {
-  return definitions_of_.contains(node.category) || node.category == "nodegraph" ||
+  return definitionsCalled(node.category) != nullptr || node.category == "nodegraph" ||
          !library_.forms(libraryName(node)).empty() || refused(node).has_value();
 }
 
@@ -150,44 +150,71 @@ Alpha alphaOfModel(const Element& surface) {
 
 }  // namespace
 
+/// The surface that one is in the end, whose definitions' graphs are surfaces of others. Null where that is
+/// not known.
+const Element* Patterns::innermost(const Element& surface) {
+  constexpr int kDeepest = 64;
+  const Element* at = &surface;
+  for (int depth = 0; depth < kDeepest; ++depth) {
+    const Element* nodedef = definitionOf(*at);
+    if (nodedef == nullptr || definition(*nodedef)->model) return at;
+    const Element* graph = definition(*nodedef)->graph;
+    if (graph == nullptr) return nullptr;
+    const auto is = [](const Element& one) {
+      return one.category == "output" && one.get("type") == "surfaceshader";
+    };
+    const auto output = std::find_if(graph->children.begin(), graph->children.end(), is);
+    at = output == graph->children.end() ? nullptr : nodeOf(*graph, output->get("nodename"));
+    if (at == nullptr) return nullptr;
+  }
+  return nullptr;
+}
+
+namespace {
+
+bool isSaid(const Element& node, std::string_view name) {
+  const Element* input = node.child("input", name);
+  return input != nullptr && (Patterns::isConnected(*input) || !input->get("value").empty());
+}
+
+}  // namespace
+
+std::optional<Alpha> Patterns::unlit(const Element& surface) {
+  const Element* inner = innermost(surface);
+  if (inner == nullptr || inner->category != "surface_unlit" || definitionOf(*inner) != nullptr)
+    return std::nullopt;
+  return isSaid(*inner, "opacity") || isSaid(*inner, "transmission") ? Alpha::Blend : Alpha::Opaque;
+}
+
 Alpha Patterns::alphaOf(const Element& surface) {
-  const Element* nodedef = definitionOf(surface);
-  if (nodedef == nullptr && surface.category != "surface") return Alpha::Blend;
-  if (nodedef == nullptr) {
-    const Element* opacity = surface.child("input", "opacity");
-    const bool all = opacity == nullptr || (!isConnected(*opacity) && opacity->get("value").empty());
-    return all ? Alpha::Opaque : Alpha::Blend;
-  }
-  if (definition(*nodedef)->model) return alphaOfModel(surface);
-  const Element* graph = definition(*nodedef)->graph;
-  if (graph == nullptr) return Alpha::Blend;
-  for (const Element& output : graph->children) {
-    if (output.category != "output" || output.get("type") != "surfaceshader") continue;
-    const Element* inner = nodeOf(*graph, output.get("nodename"));
-    return inner != nullptr && inner != &surface ? alphaOf(*inner) : Alpha::Blend;
-  }
-  return Alpha::Blend;
+  const Element* inner = innermost(surface);
+  if (inner == nullptr) return Alpha::Blend;
+  if (definitionOf(*inner) != nullptr) return alphaOfModel(*inner);
+  return inner->category == "surface" && !isSaid(*inner, "opacity") ? Alpha::Opaque : Alpha::Blend;
+}
+
+/// What is wrong with the type of an input that a definition has as a port.
+std::optional<Diagnostic> Patterns::wrongType(const Element& input, const Element& port) {
+  const std::string_view type = input.get("type");
+  if (type.empty() || typeOf(type) == typeOf(port.get("type"))) return std::nullopt;
+  return Diagnostic{"wrong-type",
+                    Severity::Error,
+                    input.place,
+                    fmt::format("{} is of the type {}", quote(input.name()), quote(type)),
+                    fmt::format("it must be {}", quote(port.get("type"))),
+                    {}};
 }
 
 /// A number of a model's input: with some of them the surface is another one, and they are no parameters.
 std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element, const Element& input,
                                             const Element& port) {
   const ir::Type wanted = *typeOf(port.get("type"));
-  const ir::Type type = typeOf(input.get("type")).value_or(wanted);
-  const bool spreads = type == ir::Type::Float && ir::isFloatVector(wanted);
-  if (type != wanted && !spreads) {
-    error(input, "wrong-type",
-          fmt::format("{} is of the type {}", quote(input.name()), quote(input.get("type"))),
-          fmt::format("it must be {}", quote(port.get("type"))));
-    return std::nullopt;
-  }
-  const Result<ir::Components> read = valueOf(input, type, port.get("unit"));
+  const Result<ir::Components> read = valueOf(input, wanted, units_, port.get("unit"));
   if (!read) {
     for (const Diagnostic& one : read.error()) error(input, one.code, one.message, one.help);
     return std::nullopt;
   }
   ir::Components value = *read;
-  if (spreads) value.fill(value[0]);
   if (wanted == ir::Type::Int || wanted == ir::Type::Bool)
     return Source{graph::Literal{wanted == ir::Type::Int ? ir::Type::Float : wanted, value}, {}};
   const auto all = value.begin() + ir::componentCount(wanted);
@@ -208,8 +235,9 @@ std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element
       return Source{graph::Literal{wanted, value}, {}};
   }
   // The default is the model's: that of a material would be in the shader of all.
-  const Result<ir::Components> by_default =
-      port.find("value") == nullptr ? Result<ir::Components>(value) : valueOf(port, wanted, port.get("unit"));
+  const Result<ir::Components> by_default = port.find("value") == nullptr
+                                                ? Result<ir::Components>(value)
+                                                : valueOf(port, wanted, units_, port.get("unit"));
   graph::Parameter& made = parameter(scope, element, input, wanted);
   made.value = value;
   made.neutral = by_default.value_or(value);
@@ -230,13 +258,11 @@ void Patterns::modelInputs(Scope& scope, const Element& element, const Element& 
                 maySuggest() ? lang::didYouMean(input.name(), inputsOf(interface)) : std::string());
       continue;
     }
-    const std::optional<ir::Type> wanted = typeOf(port->get("type"));
-    const std::optional<ir::Type> type = typeOf(input.get("type"));
     std::optional<Source> source;
-    if (isConnected(input)) {
+    if (const std::optional<Diagnostic> wrong = wrongType(input, *port)) {
+      error(input, wrong->code, wrong->message, wrong->help);
+    } else if (isConnected(input)) {
       source = connected(scope, input);
-      if (source && type == ir::Type::Float && ir::isFloatVector(*wanted))
-        source = graph::widened(std::move(*source), *wanted);
     } else if (input.find("value") != nullptr) {
       source = modelNumber(scope, element, input, *port);
     }
@@ -246,7 +272,7 @@ void Patterns::modelInputs(Scope& scope, const Element& element, const Element& 
     const std::optional<ir::Type> type = typeOf(port.get("type"));
     if (port.category != "input" || !type || port.find("value") == nullptr) continue;
     if (element.child("input", port.name()) != nullptr) continue;
-    const Result<ir::Components> value = valueOf(port, *type, port.get("unit"));
+    const Result<ir::Components> value = valueOf(port, *type, units_, port.get("unit"));
     if (value)
       made.inputs.emplace_back(
           graphName(port.name()),

@@ -8,6 +8,7 @@
 #include "materialx/flaws.h"
 #include "materialx/materialx.h"
 #include "materialx/models.h"
+#include "materialx/namespaces.h"
 #include "materialx/patterns.h"
 #include "materialx/surface.h"
 #include "support/text.h"
@@ -34,7 +35,7 @@ private:
 /// Keeps what defines, of one file.
 void DefinitionsReader::take(Element& element) {
   const bool code = element.category == "implementation" && element.find("nodegraph") == nullptr;
-  constexpr std::string_view kKept[] = {"nodedef", "nodegraph", "implementation", "geompropdef"};
+  constexpr std::string_view kKept[] = {"nodedef", "nodegraph", "implementation", "geompropdef", "unitdef"};
   if (code || std::find(std::begin(kKept), std::end(kKept), element.category) == std::end(kKept)) return;
   if (element.name().empty())
     return error(element, "no-name", fmt::format("the {} has no name", quote(element.category)));
@@ -62,6 +63,7 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
       warning.attributes = {{"code", one.code}, {"message", one.message}, {"help", one.help}};
     }
   }
+  qualifyNames(root_);
   for (const Element& child : root_.children) {
     if (child.category != "nodedef" && child.category != "nodegraph") continue;
     auto& known = child.category == "nodedef" ? nodedefs_ : nodegraphs_;
@@ -71,6 +73,7 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
             fmt::format("there is a {} {} already", child.category, quote(child.name())),
             fmt::format("it stands in {}:{}", it->second->place.file, it->second->place.line));
   }
+  addBareNames(root_, nodedefs_, nodegraphs_);
   for (Flaw& flaw : flawsOf(root_, nodedefs_, nodegraphs_)) addBounded(wrong_, std::move(flaw.said));
   if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
   addTangentSpace(root_);

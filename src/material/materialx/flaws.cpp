@@ -20,6 +20,14 @@ const Element* findNamed(const Siblings& all, std::string_view name) {
   return there ? found->second : nullptr;
 }
 
+void addBareNames(const Element& root, Siblings& nodedefs, Siblings& nodegraphs) {
+  for (const Element& child : root.children) {
+    if (child.get("namespace").empty()) continue;
+    if (child.category == "nodedef") nodedefs.try_emplace(withoutNamespace(child.name()), &child);
+    if (child.category == "nodegraph") nodegraphs.try_emplace(withoutNamespace(child.name()), &child);
+  }
+}
+
 bool isOneVersion(std::string_view a, std::string_view b) {
   const auto short_of = [](std::string_view version) {
     version = trimmed(version);

@@ -16,6 +16,9 @@ using Siblings = std::unordered_map<std::string_view, const Element*>;
 /// The element of that name, which may begin with the element's namespace: "studio:ND_dust". Null for none.
 const Element* findNamed(const Siblings& all, std::string_view name);
 
+/// Adds what stands in namespaces by its name alone, where nothing has that name.
+void addBareNames(const Element& root, Siblings& nodedefs, Siblings& nodegraphs);
+
 /// Whether two versions are one: "1" is "1.0".
 bool isOneVersion(std::string_view a, std::string_view b);
 

@@ -72,11 +72,14 @@ private:
 
   Found shaderOf(const Element& material);
   void closures(Made& made, const Found& found);
+  void unlit(Made& made, const Element& shader);
+  void procedural(Made& made, const std::string& property) const;
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
   void displacement(const Element& at);
   void refuse(const Element& at, std::string_view name);
   void patternsAlone();
   void pattern(const Element& owner, const Element& output, const std::string& name);
+  void tellRange(const Element& owner, const Element& output, Diagnostics& said);
   static bool isSurface(const Element& element) {
     const std::vector<std::string_view> names = translated();
     return element.get("type") == "surfaceshader" ||
@@ -139,11 +142,21 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   } else {
     made.scope = &patterns_.body(*found.owner, fmt::format("{}_material", name));
     Surface surface(patterns_, *made.scope, *found.shader, made.said);
-    const bool own = patterns_.modelOf(*found.shader) != nullptr || patterns_.givesClosure(*found.shader);
+    const Element* model = patterns_.modelOf(*found.shader);
+    const bool own = model != nullptr || patterns_.givesClosure(*found.shader);
+    for (const Element& input : found.shader->children) {
+      const Element* port = model == nullptr || !translates_ || input.category != "input"
+                                ? nullptr
+                                : model->child("input", input.name());
+      std::optional<Diagnostic> is = port == nullptr ? std::nullopt : Patterns::wrongType(input, *port);
+      if (is) made.said.push_back(std::move(*is));
+    }
     if ((translates_ || !own) && translate(surface, found.shader->category)) {
       made.json = surface.finish(name, made_.size());
       made.outputs = surface.outputs();
       made.error = translationError(made.surface);
+    } else if (translates_ && patterns_.unlit(*found.shader)) {
+      unlit(made, *found.shader);
     } else if (patterns_.givesClosure(*found.shader)) {
       closures(made, found);
     } else {
@@ -179,6 +192,28 @@ void MaterialsReader::closures(Made& made, const Found& found) {
   made.json["doubleSided"] = true;
   if (alpha == Alpha::Blend) made.json["alphaMode"] = "BLEND";
   if (alpha == Alpha::Mask) made.json["alphaMode"] = "MASK";
+}
+
+/// A surface whose definition has no light: its colour is a pattern.
+void MaterialsReader::unlit(Made& made, const Element& shader) {
+  const std::string property = "baseColorTexture";
+  const std::optional<Source> color = patterns_.closure(*made.scope, shader, "emission");
+  const std::optional<Source> alpha = patterns_.closure(*made.scope, shader, "alpha");
+  if (!color || !alpha) return;
+  const Source texel =
+      patterns_.add(*made.scope, property, "texel_of_color", {{"color", *color}, {"a", *alpha}});
+  made.scope->group().outputs.emplace_back(property, texel);
+  made.outputs.emplace_back(property, property);
+  made.json["extensions"]["KHR_materials_unlit"] = Json::object();
+  if (patterns_.unlit(shader) == Alpha::Blend) made.json["alphaMode"] = "BLEND";
+  procedural(made, property);
+}
+
+/// A property's texel is an output of the material's group.
+void MaterialsReader::procedural(Made& made, const std::string& property) const {
+  Json& own = made.json["pbrMetallicRoughness"][property]["extensions"]["KHR_texture_procedurals"];
+  own["index"] = static_cast<uint64_t>(made_.size());
+  own["output"] = property;
 }
 
 /// What moves the vertices, of the material that was made last.
@@ -227,6 +262,7 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
   made.scope = &patterns_.body(instance ? document_.root : owner, fmt::format("{}_pattern", name));
   const std::string property = "baseColorTexture";
   made.place = output.place;
+  tellRange(owner, output, made.said);
   const Element& from = instance ? uses_.emplace_back(std::move(use)) : output;
   std::optional<Source> source = patterns_.connected(*made.scope, from);
   made.json = Json::object();
@@ -236,11 +272,28 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
     const Source texel = patterns_.add(*made.scope, "texel", texelOf(type), {{"value", *source}});
     made.scope->group().outputs.emplace_back(property, texel);
     made.outputs.emplace_back(property, property);
-    Json& own = made.json["pbrMetallicRoughness"][property]["extensions"]["KHR_texture_procedurals"];
-    own["index"] = static_cast<uint64_t>(made_.size());
-    own["output"] = property;
+    procedural(made, property);
   }
   made_.push_back(std::move(made));
+}
+
+/// Says where a pattern is a number that no colour without light has here.
+void MaterialsReader::tellRange(const Element& owner, const Element& output, Diagnostics& said) {
+  const Element* node = patterns_.nodeOf(owner, output.get("nodename"));
+  const bool constant = node != nullptr && node->category == "constant";
+  const Element* number = constant ? node->child("input", "value") : nullptr;
+  if (number == nullptr || Patterns::isConnected(*number) || number->find("value") == nullptr) return;
+  const std::optional<ir::Type> type = typeOf(number->get("type"));
+  if (!type || (*type != ir::Type::Float && !ir::isFloatVector(*type))) return;
+  const Result<ir::Components> read = valueOf(*number, *type, patterns_.units());
+  if (!read || std::all_of(read->begin(), read->end(), [](double x) { return x >= 0 && x <= 1; })) return;
+  said.push_back(
+      {"out-of-range",
+       Severity::Warning,
+       number->place,
+       fmt::format("the pattern {} is {}", quote(output.name()), quote(number->get("value"))),
+       "its colour is drawn from 0 to 1, and the nearest numbers are taken: a surface_unlit has others",
+       {}});
 }
 
 void MaterialsReader::patternsAlone() {

@@ -79,23 +79,24 @@ void Patterns::tellWarnings() {
 /// Whether a definition is for other renderers alone (`target`): its node has none here.
 bool Patterns::isOfTarget(const Element& nodedef) {
   if (nodedef.get("target").empty()) return false;
-  of_targets_.try_emplace(nodedef.get("node"), &nodedef);
+  const std::string_view node = withoutNamespace(nodedef.get("node"));
+  of_targets_.try_emplace(node, &nodedef);
   for (const Element& port : nodedef.children) {
-    if (port.category == "input") inputs_of_targets_.emplace(nodedef.get("node"), port.name());
+    if (port.category == "input") inputs_of_targets_.emplace(node, port.name());
   }
   return true;
 }
 
 /// Whether an input is one that other renderers' definitions of the node have: others leave it out.
 bool Patterns::isOfTarget(const Element& node, const Element& input) const {
-  return inputs_of_targets_.contains({node.category, input.name()});
+  return inputs_of_targets_.contains({withoutNamespace(node.category), input.name()});
 }
 
-/// A node of the library without such inputs.
+/// A node of the library without such inputs, and without those of variants that it does not have.
 const Element& Patterns::withoutTargets(const Element& node) {
   const std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(node));
   const auto is = [&](const Element& input) {
-    return input.category == "input" && isOfTarget(node, input) &&
+    return input.category == "input" && (isOfTarget(node, input) || input.find(kOfVariant) != nullptr) &&
            std::none_of(forms.begin(), forms.end(), [&](const lang::NodeDecl* form) {
              return std::any_of(form->params.begin(), form->params.end(),
                                 [&](const lang::Param& param) { return param.name == input.name(); });

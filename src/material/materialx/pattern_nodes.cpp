@@ -89,20 +89,24 @@ void Patterns::unknownNode(const Element& element) {
   if (const std::optional<Refusal> why = refused(element))
     return error(element, "unsupported-closure",
                  fmt::format("{} is not drawn: {}", quote(element.category), why->why), why->help);
-  if (const auto of = definitions_of_.find(element.category); of != definitions_of_.end()) {
-    const Definition& one = definitions_[of->second[0]];
+  const std::vector<size_t>* of = definitionsCalled(element.category);
+  const std::string_view space = spaceOf(element.category);
+  const auto fits = [&](size_t place) {
+    return space.empty() || definitions_[place].nodedef->get("namespace") == space;
+  };
+  if (of != nullptr && std::any_of(of->begin(), of->end(), fits)) {
+    const Definition& one = definitions_[(*of)[0]];
     return error(
         element, "no-such-definition",
         fmt::format("no definition of {} has this type, version and these inputs", quote(element.category)),
-        fmt::format("{}{} stands in {}:{}", quote(one.nodedef->name()),
-                    of->second.size() > 1 ? ", the first," : "", one.nodedef->place.file,
-                    one.nodedef->place.line));
+        fmt::format("{}{} stands in {}:{}", quote(one.nodedef->name()), of->size() > 1 ? ", the first," : "",
+                    one.nodedef->place.file, one.nodedef->place.line));
   }
-  if (const auto of = of_targets_.find(element.category); of != of_targets_.end())
+  if (const auto only = of_targets_.find(withoutNamespace(element.category)); only != of_targets_.end())
     return error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),
                  fmt::format("{} in {}:{} is for the target {} alone: one without a target counts here",
-                             quote(of->second->name()), of->second->place.file, of->second->place.line,
-                             quote(of->second->get("target"))));
+                             quote(only->second->name()), only->second->place.file, only->second->place.line,
+                             quote(only->second->get("target"))));
   std::string help = "the library has no such node, and the document does not define it";
   if (maySuggest()) {
     std::vector<std::string_view> names;
@@ -199,20 +203,20 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     if (param == nullptr) continue;  // a sampler's
     std::optional<Source> source;
     if (ir::isTexture(param->type)) {
-      source = image(scope, {&scope, &element}, input, param->type == ir::Type::Texture2DArray);
+      source = image(scope, {&scope, &element}, input, param->type == ir::Type::Texture2DArray, {&element});
       space = input.get("colorspace");
     } else if (may_end && ends == "none" && isFallback(input.name())) {
       continue;  // the texture's alone
     } else if (isFallback(input.name()) && samplesFile(element) && !isConnected(input)) {
       // The texture's, too, and so no parameter.
-      const Result<ir::Components> value = valueOf(input, param->type, param->hints.unit);
+      const Result<ir::Components> value = valueOf(input, param->type, units_, param->hints.unit);
       if (value) source = Source{graph::Literal{param->type, *value}, {}};
     } else if (input.get("type") == "string") {
       // MaterialX's own default is an empty text.
       const Element* said = text(scope, input);
       const bool empty = said == nullptr || (said->get("value").empty() && !param->choices.empty());
       if (!empty)
-        source = param->choices.empty() ? attribute(scope, input, param->type)
+        source = param->choices.empty() ? attribute(scope, element, input, *param)
                                         : literal(scope, element, input, *param);
     } else if (isConnected(input)) {
       source = connected(scope, input);
@@ -267,11 +271,11 @@ void Patterns::putBehind(Scope& scope, const Element& element, graph::Node& made
 double Patterns::unitsOf(Scope& scope, const Element& element) {
   const auto scaleOf = [&](const Element& said) {
     if (said.get("unit").empty()) return 1.0;
-    const std::optional<double> scale = unitScale(said.get("unittype"), said.get("unit"));
-    if (!scale)
-      error(said, "unknown-unit", fmt::format("{} is in {}", quote(said.name()), quote(said.get("unit"))),
-            "units are those of MaterialX's unit types \"distance\", \"angle\" and \"time\"");
-    return scale.value_or(1);
+    const Unit* unit = units_.find(said.get("unittype"), said.get("unit"));
+    if (unit != nullptr) return unit->scale;
+    const Diagnostic wrong = Units::unknown(said);
+    error(said, wrong.code, wrong.message, wrong.help);
+    return 1.0;
   };
   for (const Element& input : element.children) {
     if (input.category == "input" && input.get("type") == "filename") return scaleOf(input);
@@ -279,8 +283,8 @@ double Patterns::unitsOf(Scope& scope, const Element& element) {
   const Element* property =
       element.category == "geompropvalue" ? element.child("input", "geomprop") : nullptr;
   const Element* name = property == nullptr ? nullptr : text(scope, *property);
-  const auto found = name == nullptr ? geomprops_.end() : geomprops_.find(name->get("value"));
-  return found == geomprops_.end() ? 1.0 : scaleOf(*found->second);
+  const Element* found = name == nullptr ? nullptr : propertyNamed(name->get("value"));
+  return found == nullptr ? 1.0 : scaleOf(*found);
 }
 
 /// Where no file is named the default colour stands for the image.
@@ -293,7 +297,7 @@ void Patterns::withoutFiles(Scope& scope, const Element& element, const lang::No
     none.set("name", std::string(param.name));
     none.set("type", "filename");
     none.place = element.place;
-    if (std::optional<Source> source = image(scope, {&scope, &element}, none, false))
+    if (std::optional<Source> source = image(scope, {&scope, &element}, none, false, {&element}))
       made.inputs.emplace_back(std::string(param.name), std::move(*source));
   }
 }
@@ -366,7 +370,7 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   }
   const ir::Type type = typeOf(input.get("type")).value_or(param.type);
   if (ir::isMatrix(type)) return matrix(scope, element, input, type);
-  const Result<ir::Components> value = valueOf(input, type, param.hints.unit);
+  const Result<ir::Components> value = valueOf(input, type, units_, param.hints.unit);
   if (!value) {
     for (const Diagnostic& one : value.error()) error(input, one.code, one.message, one.help);
     return std::nullopt;

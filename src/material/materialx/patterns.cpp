@@ -48,6 +48,7 @@ Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Lib
   for (const Element* more : {options_.definitions, options_.models})
     if (more != nullptr) documents_.push_back(more);
   for (const std::string& name : options_.reserved) parameter_names_.take(name);
+  for (const Element* document : documents_) units_.add(*document, wrong_);
   define();
   defineTokens();
 }
@@ -98,6 +99,7 @@ void Patterns::define() {
       if (child.category == "geompropdef") geomprops_.emplace(child.name(), &child);
     }
   }
+  if (options_.definitions != nullptr) addBareNames(*options_.definitions, nodedefs_, nodegraphs_);
   for (const Element* document : documents_) {
     for (const Element& child : document->children) {
       const std::string_view nodedef = child.get("nodedef");
@@ -122,8 +124,20 @@ bool Patterns::isKnown(const Element& nodedef) const {
     if (port.category == "output" && type.empty()) type = port.get("type");
   }
   node.set("type", std::string(type));
-  return type == "string" || type == "filename" || !library_.forms(libraryName(node)).empty() ||
-         refused(node).has_value();
+  return type == "string" || type == "filename" || type == "material" ||
+         !library_.forms(libraryName(node)).empty() || refused(node).has_value();
+}
+
+/// Whether a document has a definition of the name of one of PatternOptions::definitions, which may be in the
+/// document's own namespace.
+bool Patterns::isReplaced(const Element& nodedef) const {
+  if (nodedefs_.at(nodedef.name()) != &nodedef) return true;
+  return std::any_of(documents_.begin(), documents_.end(), [&](const Element* document) {
+    const std::string_view space = document->get("namespace");
+    if (space.empty() || nodedef.get("namespace") != space) return false;
+    const Element* own = nodedefs_.at(withoutNamespace(nodedef.name()));
+    return own != &nodedef && own->get("namespace") == space;
+  });
 }
 
 void Patterns::defineFrom(const Element& document) {
@@ -133,7 +147,7 @@ void Patterns::defineFrom(const Element& document) {
     if (isOfTarget(child)) continue;
     const auto graph = bodies_.find(child.name());
     if (&document == options_.definitions) {
-      if (nodedefs_.at(child.name()) != &child) continue;
+      if (isReplaced(child)) continue;
       if (graph == bodies_.end() && isKnown(child)) continue;
     }
     const Definition made{merged(child, 0), graph == bodies_.end() ? nullptr : graph->second, model};
@@ -164,6 +178,21 @@ const Element* Patterns::merged(const Element& nodedef, size_t depth) {
   return &whole;
 }
 
+/// The definitions whose node is called so: with its namespace, where their files write it there, or without;
+/// null for none.
+const std::vector<size_t>* Patterns::definitionsCalled(std::string_view category) const {
+  auto of = definitions_of_.find(category);
+  if (of == definitions_of_.end()) of = definitions_of_.find(withoutNamespace(category));
+  return of == definitions_of_.end() ? nullptr : &of->second;
+}
+
+/// The namespace that the definitions of a node are in; empty where its name alone says which they are.
+std::string_view Patterns::spaceOf(std::string_view category) const {
+  if (definitions_of_.contains(category)) return {};
+  const size_t colon = category.rfind(':');
+  return colon == std::string_view::npos ? std::string_view() : category.substr(0, colon);
+}
+
 /// The definitions that fit a node: of its namespace, types and version.
 std::vector<const Element*> Patterns::definitionsOf(const Element& node) const {
   std::vector<const Element*> found;
@@ -178,12 +207,10 @@ std::vector<const Element*> Patterns::definitionsOf(const Element& node) const {
     return type;
   };
   const std::string_view category = node.category;
-  const size_t colon = category.rfind(':');  // behind a namespace
-  const std::string_view space =
-      colon == std::string_view::npos ? std::string_view() : category.substr(0, colon);
-  const auto of = definitions_of_.find(space.empty() ? category : category.substr(colon + 1));
-  if (of == definitions_of_.end()) return found;
-  for (const size_t place : of->second) {
+  const std::vector<size_t>* of = definitionsCalled(category);
+  if (of == nullptr) return found;
+  const std::string_view space = spaceOf(category);
+  for (const size_t place : *of) {
     const Element& nodedef = *definitions_[place].nodedef;
     if (definitions_[place].model || (!space.empty() && nodedef.get("namespace") != space)) continue;
     if (const std::string_view wanted = node.get("nodedef"); !wanted.empty()) {
@@ -257,15 +284,19 @@ void Patterns::demandAll() {
       if (child.category == "nodedef") bases.insert(child.get("inherit"));
     }
   }
-  for (const Definition& one : definitions_) {
+  const std::vector<Definition> all = definitions_;  // more of them are made meanwhile
+  for (Definition one : all) {
     if (one.model) continue;
     checkDefinition(*one.nodedef);
     if (one.graph == nullptr) {
       if (!bases.contains(one.nodedef->name())) withoutGraph(*one.nodedef, *one.nodedef);
       continue;
     }
+    one = *definition(*definitionWith(*one.nodedef, {}, *one.nodedef));
     for (const Element& port : one.nodedef->children) {
-      if (port.category != "output") continue;
+      // Texts are known before anything is computed: where they are asked for.
+      if (port.category != "output" || port.get("type") == "string" || port.get("type") == "filename")
+        continue;
       checkDeclared(*one.nodedef, *one.graph, port.name());
       demand(*one.graph, port.name(), *one.nodedef);
     }
@@ -337,7 +368,7 @@ void Patterns::groupInputs(Scope& scope) {
                                *type == ir::Type::Vec3 && geometry->node == "tangent" ? "xyz" : ""};
     } else if (file) {
       const bool tiles = goesToTiles(*scope.owner_, input.name());
-      made.by_default = image(scope, samplingOf(scope, input), input, tiles);
+      made.by_default = image(scope, samplingOf(scope, input), input, tiles, {});
       if (tiles && hasTiles(scope, input, input)) made.type = ir::Type::Texture2DArray;
     } else if (input.find("value") != nullptr) {
       lang::Param param;
@@ -589,7 +620,7 @@ void Patterns::node(Scope& scope, const Element& element) {
     made.type = group(*graph);
     instance(scope, element, *nodedef, made);
   } else {
-    return libraryNode(scope, element, made);
+    return libraryNode(scope, standardProperty(scope, element), made);
   }
   scope.group_.nodes.push_back(std::move(made));
   scope.elements_.push_back(&element);
@@ -626,7 +657,7 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
           inside.group_.inputs.begin(), inside.group_.inputs.end(), [&](const graph::GroupInput& one) {
             return one.name == graphName(input.name()) && one.type == ir::Type::Texture2DArray;
           });
-      source = image(scope, samplingOf(inside, input), input, tiles);
+      source = image(scope, samplingOf(inside, input), input, tiles, {&element, &interface});
     } else if (linked && type) {
       source = connected(scope, input);
     } else if (type) {
@@ -634,7 +665,8 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
       param.type = *type;
       if (&element != &interface) param.hints.unit = port->get("unit");
       const std::string_view unit = input.get("unit"), kind = port->get("unittype");
-      if (!unit.empty() && !kind.empty() && unitScale({}, unit) && !unitScale(kind, unit)) {
+      if (!unit.empty() && !kind.empty() && units_.find({}, unit) != nullptr &&
+          units_.find(kind, unit) == nullptr) {
         error(input, "unknown-unit", fmt::format("{} is in {}", quote(input.name()), quote(unit)),
               fmt::format("its unit type is {}", quote(kind)));
         continue;

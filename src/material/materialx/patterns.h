@@ -102,6 +102,8 @@ public:
   bool givesClosure(const Element& node) const;
   /// What a surface made of closures is to what is behind it, whatever its numbers become.
   Alpha alphaOf(const Element& surface);
+  /// What a surface that is a `surface_unlit` by its definition is to what is behind it; nothing for others.
+  std::optional<Alpha> unlit(const Element& surface);
   /// The model of a surface; null where the document has a definition, or there is none.
   const Element* modelOf(const Element& surface) const;
   /// The unit of an input of a surface that there is a model for; empty where it says none.
@@ -117,6 +119,7 @@ public:
   /// A node of a body that the document has not: what it gives. It lives as long as this.
   std::optional<graph::Source> insert(Scope& scope, Element element);
   static bool isConnected(const Element& input);
+  static std::optional<Diagnostic> wrongType(const Element& input, const Element& port);
 
   /// Asks for every output of every definition of PatternOptions::definitions.
   void demandAll();
@@ -126,6 +129,7 @@ public:
   /// Whether a group, or one that it has, is wrong.
   bool isWrong(const std::string& group) const { return broken_.contains(group); }
   graph::Graph& graph() { return graph_; }
+  const Units& units() const { return units_; }
   const Element* definitionOf(const Element& node) const;
 
 private:
@@ -142,10 +146,14 @@ private:
 
   void define();
   void defineFrom(const Element& document);
+  bool isReplaced(const Element& nodedef) const;
   void findFlaws();
   void checkDefinition(const Element& nodedef);
   void tellWarnings();
+  const std::vector<size_t>* definitionsCalled(std::string_view category) const;
+  std::string_view spaceOf(std::string_view category) const;
   std::vector<const Element*> definitionsOf(const Element& node) const;
+  const Element* innermost(const Element& surface);
   void checkVersion(const Element& node);
   bool isOfTarget(const Element& nodedef);
   bool isOfTarget(const Element& node, const Element& input) const;
@@ -170,14 +178,16 @@ private:
                                        const lang::Param& param);
   std::optional<graph::Source> matrix(Scope& scope, const Element& element, const Element& input,
                                       ir::Type type);
-  std::optional<graph::Source> attribute(Scope& scope, const Element& input, ir::Type type);
+  std::optional<graph::Source> attribute(Scope& scope, const Element& element, const Element& input,
+                                         const lang::Param& param);
   /// A node that samples an image, and what it stands in.
   struct Sampling {
     Scope* scope;
     const Element* node;
   };
-  Sampling samplingOf(Scope& body, const Element& input) const;
-  std::optional<graph::Source> image(Scope& scope, const Sampling& by, const Element& input, bool tiles);
+  Sampling samplingOf(Scope& body, const Element& input);
+  std::optional<graph::Source> image(Scope& scope, const Sampling& by, const Element& input, bool tiles,
+                                     std::vector<const Element*> holders);
   std::string_view choice(Scope& scope, const Element& element, std::string_view name,
                           std::span<const std::string_view> words);
   double unitsOf(Scope& scope, const Element& element);
@@ -186,7 +196,16 @@ private:
   std::string_view endsOf(Scope& scope, const Element& element);
   const Element* text(Scope& within, const Element& input);
   const Element* propertyOf(const Element& node, std::string_view name);
+  /// What the instances of a definition are given that makes another nodegraph.
+  struct Given {
+    struct OfFile {
+      std::string_view input, attribute, value;
+    };
+    std::vector<std::pair<const Element*, std::string>> texts;  ///< of ports
+    std::vector<OfFile> files;
+  };
   const Element* definitionFor(Scope& scope, const Element& element);
+  const Element* definitionWith(const Element& nodedef, const Given& given, const Element& at);
   bool takesTiles(std::string_view category) const;
   bool isOfInstances(const Scope& scope, const Element& input) const;
   bool hasTiles(Scope& scope, const Element& node, const Element& input);
@@ -200,9 +219,13 @@ private:
   bool isOfKind(const Element& input, const Referred& referred);
   struct OfGeometry {
     std::string node, space;
+    std::string index = {};
     std::string given;  ///< what the template has for it; empty where the node computes it
   };
+  std::optional<OfGeometry> geometryOf(std::string_view name) const;
+  const Element* propertyNamed(std::string_view name) const;
   std::optional<OfGeometry> ofGeometry(const Element& input);
+  const Element& standardProperty(Scope& scope, const Element& element);
   std::optional<graph::Source> refer(Scope& scope, const Element& input, Referred referred, size_t depth);
   std::optional<Referred> find(const Scope& scope, const Element& input);
   const lang::NodeDecl* formOf(Scope& scope, const Element& element);
@@ -211,7 +234,7 @@ private:
   graph::Parameter& parameter(const Scope& scope, const Element& element, const Element& input,
                               ir::Type type);
   bool isAnimated(const Element& input) const;
-  std::string fileOf(const Scope& scope, const Element& node, const Element& input);
+  std::string fileOf(const Scope& scope, std::vector<const Element*> owners, const Element& input);
   const Element* tokenOf(const Scope& scope, const Element& token);
   void checkTokens(const Element& input, std::string_view file);
   void defineTokens();
@@ -231,6 +254,7 @@ private:
   const lang::Library& library_;
   PatternOptions options_;
   std::vector<const Element*> documents_;
+  Units units_;
   std::vector<Definition> definitions_;
   std::deque<Element> merged_, made_;
   std::map<const Element*, const Element*> merges_;
@@ -253,7 +277,9 @@ private:
   std::set<size_t> told_;                                               ///< flaws of what is used
   std::set<std::string, std::less<>> used_files_;                       ///< of definitions
   size_t suggestions_ = 0;
+  size_t samplings_ = 0;  ///< definitions that a file is being handed down through
   std::map<std::string, const Element*> with_texts_;  ///< definitions, by their names and their texts
+  uint64_t copied_ = 0;                               ///< elements of nodegraphs of these
   std::map<std::string, std::string> textures_;       ///< by all that is said of one
   struct Demand {
     Scope* scope;

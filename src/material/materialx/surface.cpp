@@ -89,7 +89,7 @@ bool Surface::takeFactor(const Element& in, Value& value) {
     return false;
   const std::optional<ir::Type> type = typeOf(second->get("type"));
   if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return false;
-  const Result<ir::Components> read = valueOf(*second, *type);
+  const Result<ir::Components> read = valueOf(*second, *type, patterns_.units());
   const int count = ir::componentCount(*type);
   const bool fits =
       read && std::all_of(read->begin(), read->begin() + count, [](double x) { return x > 0 && x <= 1; });
@@ -113,7 +113,7 @@ Value Surface::value(std::string_view name, int size, ir::Components by_default,
   }
   if (in->find("value") == nullptr) return value;
   const ir::Type type = typeOf(in->get("type")).value_or(wanted);
-  const Result<ir::Components> read = valueOf(*in, type, patterns_.unitOf(shader_, name));
+  const Result<ir::Components> read = valueOf(*in, type, patterns_.units(), patterns_.unitOf(shader_, name));
   if (!read) {
     said_.insert(said_.end(), read.error().begin(), read.error().end());
     return value;

@@ -1,6 +1,8 @@
 // Texts of a document: they decide what the graph is, and which image a texture has.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "graph/text.h"
 #include "materialx/patterns.h"
 #include "support/text.h"
@@ -12,6 +14,8 @@ using graph::Source;
 namespace {
 
 constexpr size_t kMostNodesOfTexts = 64;
+constexpr size_t kDeepestDefinitions = 64;           ///< that a file is handed down through
+constexpr uint64_t kMostCopied = uint64_t{1} << 20;  ///< elements of nodegraphs that are made again
 
 bool isText(const Element& element) {
   return element.get("type") == "string" || element.get("type") == "filename";
@@ -125,53 +129,80 @@ const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
   const Element* nodedef = definitionOf(element);
   if (nodedef == nullptr) return nullptr;
   checkDefinition(*nodedef);
-  std::string key = fmt::format("{} {}", nodedef->get("node"), nodedef->name());
-  std::vector<std::pair<const Element*, std::string>> texts;
-  std::vector<std::pair<std::string_view, std::string_view>> spaces;  ///< of files, which nodes convert
+  Given given;
   for (const Element& input : element.children) {
     const bool token = input.category == "token";
     const Element* port =
         token || input.category == "input" ? nodedef->child(input.category, input.name()) : nullptr;
     if (port == nullptr) continue;
-    if (port->get("type") == "filename" && isConverted(input.get("colorspace"))) {
-      spaces.emplace_back(port->name(), input.get("colorspace"));
-      key += fmt::format("\n{} {}", port->name(), input.get("colorspace"));
-    }
+    if (port->get("type") == "filename" && isConverted(input.get("colorspace")))
+      given.files.push_back({port->name(), "colorspace", input.get("colorspace")});
+    if (port->get("type") == "filename" && !input.get("unit").empty())
+      given.files.push_back({port->name(), "unit", input.get("unit")});
     if (!token && port->get("type") != "string") continue;
     const Element* said = token ? tokenOf(scope, input) : text(scope, input);
     if (said == nullptr || said->get("value") == port->get("value")) continue;
-    texts.emplace_back(port, said->get("value"));
-    key += fmt::format("\n{} {}\n{}", port->category, port->name(), said->get("value"));
+    given.texts.emplace_back(port, said->get("value"));
   }
-  const Element* graph = definition(*nodedef)->graph;
-  if ((texts.empty() && spaces.empty()) || graph == nullptr) return nodedef;
-  const auto [it, fresh] = with_texts_.try_emplace(std::move(key));
+  return definitionWith(*nodedef, given, element);
+}
+
+/// The definition with these texts and what is said of files, which the nodes in its graph convert. `at`: who
+/// asks for it.
+const Element* Patterns::definitionWith(const Element& nodedef, const Given& given, const Element& at) {
+  const Definition of = *definition(nodedef);
+  const bool first = of.graph == nullptr || by_graph_.at(of.graph) == by_nodedef_.at(&nodedef);
+  if ((given.texts.empty() && given.files.empty() && first) || of.graph == nullptr) return &nodedef;
+  std::string key = fmt::format("{} {}", nodedef.get("node"), nodedef.name());
+  for (const Given::OfFile& one : given.files)
+    key += fmt::format("\n{} {} {}", one.input, one.attribute, one.value);
+  for (const auto& [port, value] : given.texts)
+    key += fmt::format("\n{} {}\n{}", port->category, port->name(), value);
+  const auto [it, fresh] = with_texts_.try_emplace(std::move(key), &nodedef);
   if (!fresh) return it->second;
-  Element& made = made_.emplace_back(*nodedef);
+  copied_ += countOfElements(*of.graph);
+  if (copied_ > kMostCopied) {
+    error(at, "too-many",
+          fmt::format("definitions with other texts, or that share a nodegraph, are more than {} elements",
+                      kMostCopied),
+          "a nodegraph is made for each choice of the texts of its definition");
+    return &nodedef;
+  }
+  Element& made = made_.emplace_back(nodedef);
   for (Element& port : made.children) {
-    for (const auto& [of, value] : texts) {
-      if (port.category == of->category && port.name() == of->name()) port.set("value", value);
+    for (const auto& [text_of, value] : given.texts) {
+      if (port.category == text_of->category && port.name() == text_of->name()) port.set("value", value);
     }
   }
-  Element& body = made_.emplace_back(*graph);
+  Element& body = made_.emplace_back(*of.graph);
   for (Element& node : body.children) {
     for (Element& input : node.children) {
-      for (const auto& [name, space] : spaces)
-        if (input.get("interfacename") == name) input.set("colorspace", std::string(space));
+      for (const Given::OfFile& one : given.files)
+        if (input.get("interfacename") == one.input) input.set(one.attribute, std::string(one.value));
     }
   }
   by_nodedef_.emplace(&made, definitions_.size());
   by_graph_.emplace(&body, definitions_.size());
-  definitions_.push_back({&made, &body});
+  definitions_.push_back({&made, &body, of.model});
   return it->second = &made;
 }
 
 /// An attribute of the vertices by the text that names it. glTF begins the application's names with an
-/// underscore.
-std::optional<Source> Patterns::attribute(Scope& scope, const Element& input, ir::Type type) {
+/// underscore. A definition that names none by default has what stands for a missing one.
+std::optional<Source> Patterns::attribute(Scope& scope, const Element& element, const Element& input,
+                                          const lang::Param& param) {
+  const ir::Type type = param.type;
   const Element* from = text(scope, input);
   if (from == nullptr) return std::nullopt;
   const std::string_view said = from->get("value");
+  if (said.empty() && from != &input) {
+    const Element* otherwise =
+        element.child("input", element.category == "geompropvalue" ? "default" : "fallback");
+    if (otherwise != nullptr && isConnected(*otherwise)) return connected(scope, *otherwise);
+    if (otherwise != nullptr && otherwise->find("value") != nullptr)
+      return literal(scope, element, *otherwise, param);
+    return Source{graph::Literal{type == ir::Type::Int ? ir::Type::Float : type, {}}, {}};
+  }
   std::string name(said);
   if (!graph::isAttributeName(name)) name = "_" + graphName(said);
   if (said.empty() || !graph::isAttributeName(name)) {
@@ -217,14 +248,13 @@ std::string Patterns::withGeometryTokens(std::string_view file) const {
   }
 }
 
-/// The file's name with tokens in place of their names: of the node that takes it, and of what that is in.
-std::string Patterns::fileOf(const Scope& scope, const Element& node, const Element& input) {
+/// The file's name with tokens in place of their names: of what takes it, the node first, and of what that is
+/// in.
+std::string Patterns::fileOf(const Scope& scope, std::vector<const Element*> owners, const Element& input) {
   std::string file(trimmed(input.get("value")));
-  std::vector<const Element*> owners{scope.owner_};
   // A definition's tokens, as its instances say them.
-  if (scope.interface_ != nullptr && scope.interface_ != scope.owner_)
-    owners.insert(owners.begin(), scope.interface_);
-  owners.insert(owners.begin(), &node);
+  if (scope.interface_ != nullptr && scope.interface_ != scope.owner_) owners.push_back(scope.interface_);
+  owners.push_back(scope.owner_);
   owners.insert(owners.end(), documents_.begin(), documents_.end());
   for (const Element* owner : owners) {
     for (const Element& token : owner->children) {
@@ -272,7 +302,7 @@ bool Patterns::hasTiles(Scope& scope, const Element& node, const Element& input)
   }
   const Element* from = text(scope, input);
   return from != nullptr && from->find("texture") == nullptr &&
-         !graph::tileToken(fileOf(scope, node, *from)).empty();
+         !graph::tileToken(fileOf(scope, {&node}, *from)).empty();
 }
 
 /// Whether all that an interface's input goes to takes images of tiles.
@@ -317,24 +347,33 @@ std::string_view Patterns::choice(Scope& scope, const Element& element, std::str
   return value;
 }
 
-/// What samples the file of a body's input: the first node there, or the input itself where none does.
-Patterns::Sampling Patterns::samplingOf(Scope& body, const Element& input) const {
+/// What samples the file of a body's input: the first node there or in the definition that it is given to, or
+/// the input itself where none does.
+Patterns::Sampling Patterns::samplingOf(Scope& body, const Element& input) {
   for (const Element& node : body.owner_->children) {
     const auto takes = std::find_if(node.children.begin(), node.children.end(), [&](const Element& one) {
       return one.category == "input" && one.get("interfacename") == input.name();
     });
     if (takes == node.children.end()) continue;
-    const Element* nodedef = definitionOf(node);
-    const Definition* inner = nodedef == nullptr ? nullptr : definition(*nodedef);
-    if (inner == nullptr || inner->graph == nullptr) return {&body, &node};
-    const auto scope = groups_.find(inner->graph);
-    if (scope != groups_.end()) return samplingOf(*scope->second, *takes);
+    Scope* const outer = std::exchange(now_, &body);
+    const Element* nodedef = definitionFor(body, node);
+    now_ = outer;
+    const Element* graph = nodedef == nullptr ? nullptr : definition(*nodedef)->graph;
+    if (graph == nullptr) return {&body, &node};
+    if (samplings_ == kDeepestDefinitions) break;
+    ++samplings_;
+    (void)group(*graph);
+    const Sampling found = samplingOf(*groups_.at(graph), *takes);
+    --samplings_;
+    return found;
   }
   return {&body, &input};
 }
 
-/// An image. `tiles`: what takes it has a place for an image of each tile.
-std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const Element& input, bool tiles) {
+/// An image. `tiles`: what takes it has a place for an image of each tile. `holders`: what has the tokens of
+/// its name, before those of the body.
+std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const Element& input, bool tiles,
+                                      std::vector<const Element*> holders) {
   const Element& element = *by.node;
   if (isOfInstances(scope, input)) return connected(scope, input);
   const Element* from = text(scope, input);
@@ -348,7 +387,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const El
     const std::optional<std::vector<double>> index = numbersOf(*number);
     texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
   } else {
-    texture.file = fileOf(scope, element, *from);
+    texture.file = fileOf(scope, std::move(holders), *from);
     checkTokens(*from, texture.file);
   }
   const bool tiled = !graph::tileToken(texture.file).empty();
@@ -378,7 +417,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const El
   if (fallback != nullptr && fallback->find("value") != nullptr) {
     const std::optional<ir::Type> of = typeOf(fallback->get("type"));
     const Result<ir::Components> value =
-        of ? valueOf(*fallback, *of) : Result<ir::Components>(ir::Components{});
+        of ? valueOf(*fallback, *of, units_) : Result<ir::Components>(ir::Components{});
     if (value) color_of = *value;
     if (of == ir::Type::Float) color_of = {color_of[0], color_of[0], color_of[0], 1};
     if (of == ir::Type::Vec3) color_of[3] = 1;
@@ -401,43 +440,86 @@ std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const El
   return Source{graph::TextureRef{it->second}, {}};
 }
 
-/// What an input has of the geometry where nothing gives it: by a `geompropdef` of the documents, or one of
-/// MaterialX's own. Nothing, and an error, for a name that is neither.
-std::optional<Patterns::OfGeometry> Patterns::ofGeometry(const Element& input) {
-  const std::string_view name = input.get("defaultgeomprop");
-  if (name.empty()) return std::nullopt;
+/// What a name of a geometric property is: by a `geompropdef` of the documents, or one of MaterialX's own.
+/// Nothing where it is neither of these, or an attribute of its own.
+std::optional<Patterns::OfGeometry> Patterns::geometryOf(std::string_view name) const {
   constexpr std::pair<std::string_view, std::string_view> kNodes[] = {
       {"P", "position"}, {"N", "normal"}, {"T", "tangent"}, {"B", "bitangent"}, {"V", "viewdirection"}};
   constexpr std::string_view kSpaces[] = {"object", "model", "world"};
   OfGeometry made;
-  std::string_view index;
-  if (const auto found = geomprops_.find(name); found != geomprops_.end()) {
-    const std::string_view space = found->second->get("space");
-    made.node = found->second->get("geomprop");
+  if (const Element* found = propertyNamed(name)) {
+    const std::string_view space = found->get("space");
+    made.node = found->get("geomprop");
     made.space = space.empty() ? std::string_view("object") : space;
-    index = found->second->get("index");
+    made.index = found->get("index");
   }
   for (const auto& [letter, node] : kNodes) {
     if (!made.node.empty() || !name.starts_with(letter)) continue;
     const auto space = std::find(std::begin(kSpaces), std::end(kSpaces), name.substr(1));
     if (space != std::end(kSpaces)) made.node = node, made.space = *space;
   }
-  if (made.node.empty() && (name == "UV0" || name == "UV1")) made.node = "texcoord", index = name.substr(2);
+  if (made.node.empty() && (name == "UV0" || name == "UV1"))
+    made.node = "texcoord", made.index = name.substr(2);
   const bool known = std::any_of(std::begin(kNodes), std::end(kNodes),
                                  [&](const auto& one) { return one.second == made.node; }) &&
                      std::find(std::begin(kSpaces), std::end(kSpaces), made.space) != std::end(kSpaces);
   if (made.node == "texcoord") {
-    made.given = fmt::format("uv{}", index.empty() ? std::string_view("0") : index);
+    made.given = fmt::format("uv{}", made.index.empty() ? std::string_view("0") : made.index);
     if (made.given.size() == 3 && made.given[2] >= '0' && made.given[2] <= '3') return made;
   } else if (known) {
     if (made.space == "world" && made.node != "bitangent" && made.node != "viewdirection")
       made.given = made.node;
     return made;
   }
-  error(input, "unknown-geomprop", fmt::format("there is no geometric property {}", quote(name)),
+  return std::nullopt;
+}
+
+/// The `geompropdef` of a name, which may stand behind a namespace; null for none.
+const Element* Patterns::propertyNamed(std::string_view name) const {
+  auto found = geomprops_.find(name);
+  if (found == geomprops_.end()) found = geomprops_.find(name.substr(name.rfind(':') + 1));
+  return found == geomprops_.end() ? nullptr : found->second;
+}
+
+/// What an input has of the geometry where nothing gives it. Nothing, and an error, for an unknown name.
+std::optional<Patterns::OfGeometry> Patterns::ofGeometry(const Element& input) {
+  const std::string_view name = input.get("defaultgeomprop");
+  if (name.empty()) return std::nullopt;
+  std::optional<OfGeometry> made = geometryOf(name);
+  if (!made)
+    error(
+        input, "unknown-geomprop", fmt::format("there is no geometric property {}", quote(name)),
         "it must be Pobject, Nobject, Tobject, Bobject, Pworld, Nworld, Tworld, Bworld, Vworld, UV0 or UV1, "
         "or a geompropdef of position, normal, tangent, bitangent, viewdirection or texcoord");
-  return std::nullopt;
+  return made;
+}
+
+/// The node that a `geompropvalue` stands for, which asks for a standard property by the name of one; the
+/// element itself where it asks for an attribute.
+const Element& Patterns::standardProperty(Scope& scope, const Element& element) {
+  const Element* asked = element.category == "geompropvalue" ? element.child("input", "geomprop") : nullptr;
+  const Element* said = asked == nullptr ? nullptr : text(scope, *asked);
+  std::optional<OfGeometry> of = said == nullptr ? std::nullopt : geometryOf(said->get("value"));
+  const Element* own = said == nullptr ? nullptr : propertyNamed(said->get("value"));
+  if (own != nullptr && own->get("geomprop") == "geomcolor")
+    of = OfGeometry{"geomcolor", {}, std::string(own->get("index")), {}};
+  if (!of) return element;
+  Element& made = made_.emplace_back();
+  made.category = of->node;
+  made.place = element.place;
+  made.attributes = element.attributes;
+  const auto give = [&](std::string_view name, std::string_view type, std::string_view value) {
+    if (value.empty()) return;
+    Element& input = made.children.emplace_back();
+    input.category = "input";
+    input.place = asked->place;
+    input.set("name", std::string(name));
+    input.set("type", std::string(type));
+    input.set("value", std::string(value));
+  };
+  give("space", "string", of->index.empty() ? std::string_view(of->space) : std::string_view());
+  give("index", "integer", of->index);
+  return made;
 }
 
 }  // namespace lacquer::materialx

@@ -84,31 +84,30 @@ double decoded(const Space& space, double x) {
   return x;
 }
 
-struct Unit {
-  std::string_view type, name;
-  double scale;
-};
 /// MaterialX 1.39, "Units": of distances in metres, of angles in degrees, of times in seconds.
-constexpr Unit kUnits[] = {{"distance", "nanometer", 1e-9},
-                           {"distance", "micron", 1e-6},
-                           {"distance", "micrometer", 1e-6},  // as nodes of the library say it
-                           {"distance", "millimeter", 1e-3},
-                           {"distance", "centimeter", 1e-2},
-                           {"distance", "inch", 0.0254},
-                           {"distance", "foot", 0.3048},
-                           {"distance", "yard", 0.9144},
-                           {"distance", "meter", 1},
-                           {"distance", "kilometer", 1000},
-                           {"distance", "mile", 1609.344},
-                           {"angle", "degree", 1},
-                           {"angle", "radian", 57.295779513082323},
-                           {"time", "second", 1},
-                           {"time", "minute", 60},
-                           {"time", "hour", 3600}};
+std::span<const Unit> standardUnits() {
+  static const Unit kUnits[] = {{"distance", "nanometer", 1e-9},
+                                {"distance", "micron", 1e-6},
+                                {"distance", "micrometer", 1e-6},  // as nodes of the library say it
+                                {"distance", "millimeter", 1e-3},
+                                {"distance", "centimeter", 1e-2},
+                                {"distance", "inch", 0.0254},
+                                {"distance", "foot", 0.3048},
+                                {"distance", "yard", 0.9144},
+                                {"distance", "meter", 1},
+                                {"distance", "kilometer", 1000},
+                                {"distance", "mile", 1609.344},
+                                {"angle", "degree", 1},
+                                {"angle", "radian", 57.295779513082323},
+                                {"time", "second", 1},
+                                {"time", "minute", 60},
+                                {"time", "hour", 3600}};
+  return kUnits;
+}
 
-const Unit* unitOf(std::string_view unittype, std::string_view unit) {
-  for (const Unit& row : kUnits) {
-    if (row.name == unit && (unittype.empty() || row.type == unittype)) return &row;
+const Unit* unitIn(std::span<const Unit> units, std::string_view type, std::string_view name) {
+  for (const Unit& row : units) {
+    if (row.name == name && (type.empty() || row.type == type)) return &row;
   }
   return nullptr;
 }
@@ -153,12 +152,50 @@ ir::Components toLinear(std::string_view name, ir::Components color) {
   return color;
 }
 
-std::optional<double> unitScale(std::string_view unittype, std::string_view unit) {
-  const Unit* found = unitOf(unittype, unit);
-  return found == nullptr ? std::nullopt : std::optional(found->scale);
+void Units::add(const Element& document, Diagnostics& said) {
+  for (const Element& of : document.children) {
+    if (of.category != "unitdef") continue;
+    for (const Element& one : of.children) {
+      if (one.category != "unit") continue;
+      const std::optional<std::vector<double>> scale = numbersOf(one.get("scale"));
+      if (!scale || scale->size() != 1 || !((*scale)[0] > 0)) {
+        addBounded(said,
+                   {"wrong-value",
+                    Severity::Warning,
+                    one.place,
+                    fmt::format("the scale of the unit {} is {}", quote(one.name()), quote(one.get("scale"))),
+                    "it is a number above 0: the unit is left out",
+                    {}});
+        continue;
+      }
+      // MaterialX's own text has fewer digits of a radian.
+      constexpr double kSame = 1e-8;
+      const Unit* standard = unitIn(standardUnits(), of.get("unittype"), one.name());
+      if (standard != nullptr && std::abs(standard->scale / (*scale)[0] - 1) < kSame) continue;
+      own_[std::string(one.name())].push_back(
+          {std::string(of.get("unittype")), std::string(one.name()), (*scale)[0]});
+    }
+  }
 }
 
-Result<ir::Components> valueOf(const Element& input, ir::Type type, std::string_view port_unit) {
+const Unit* Units::find(std::string_view type, std::string_view name) const {
+  const auto own = own_.find(name);
+  const Unit* found = own == own_.end() ? nullptr : unitIn(own->second, type, name);
+  return found != nullptr ? found : unitIn(standardUnits(), type, name);
+}
+
+Diagnostic Units::unknown(const Element& said) {
+  return {
+      "unknown-unit",
+      Severity::Error,
+      said.place,
+      fmt::format("{} is in {}", quote(said.name()), quote(said.get("unit"))),
+      "units are those of MaterialX's unit types \"distance\", \"angle\" and \"time\", and of a \"unitdef\"",
+      {}};
+}
+
+Result<ir::Components> valueOf(const Element& input, ir::Type type, const Units& units,
+                               std::string_view port_unit) {
   const std::string_view value = trimmed(input.get("value"));
   const auto wrong = [&](std::string message, std::string help) {
     return fail("wrong-value", input.place, std::move(message), std::move(help));
@@ -184,11 +221,9 @@ Result<ir::Components> valueOf(const Element& input, ir::Type type, std::string_
   if (type == ir::Type::Int && components[0] != std::trunc(components[0]))
     return wrong(what(), "an integer is a whole number");
   if (const std::string* unit = input.find("unit"); unit != nullptr && !unit->empty()) {
-    const Unit* given = unitOf(input.get("unittype"), *unit);
-    const Unit* wanted = unitOf({}, port_unit);
-    if (given == nullptr)
-      return fail("unknown-unit", input.place, fmt::format("{} is in {}", quote(input.name()), quote(*unit)),
-                  "units are those of MaterialX's unit types \"distance\", \"angle\" and \"time\"");
+    const Unit* given = units.find(input.get("unittype"), *unit);
+    const Unit* wanted = units.find({}, port_unit);
+    if (given == nullptr) return tl::make_unexpected(Diagnostics{Units::unknown(input)});
     if (wanted != nullptr && wanted->type != given->type)
       return fail("unknown-unit", input.place, fmt::format("{} is in {}", quote(input.name()), quote(*unit)),
                   fmt::format("it is a number of {}s", port_unit));

@@ -1,10 +1,12 @@
 // Values as a document writes them: numbers with units and colour spaces, as numbers of the graph.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ir/dag.h"
 #include "ir/types.h"
@@ -39,12 +41,29 @@ bool isConverted(std::string_view space);
 /// MaterialX's `cmlib`.
 ir::Components toLinear(std::string_view space, ir::Components color);
 
-/// What brings a number of a unit to the one in which a scene is; nothing for a unit that is not known.
-std::optional<double> unitScale(std::string_view unittype, std::string_view unit);
+struct Unit {
+  std::string type, name;
+  double scale = 1;  ///< what brings a number of it to the one in which a scene is
+};
+
+/// MaterialX's own units of distances, angles and times, and those of the `unitdef`s of documents.
+class Units {
+public:
+  /// Adds the units that a document defines. One whose scale is no number above 0 is none: a warning.
+  void add(const Element& document, Diagnostics& said);
+  /// The unit of a name, and of a type where that is not empty; null for none.
+  const Unit* find(std::string_view type, std::string_view name) const;
+  /// The error of an input in a unit that is not known.
+  static Diagnostic unknown(const Element& said);
+
+private:
+  std::map<std::string, std::vector<Unit>, std::less<>> own_;
+};
 
 /// Reads the `value` of an input of a type of typeOf() but a matrix, in the graph's colours and in the unit
 /// that the port says, or the scene's where it says none. A number without a unit is as it is. An error with
 /// the input's place for what is none.
-Result<ir::Components> valueOf(const Element& input, ir::Type type, std::string_view port_unit = {});
+Result<ir::Components> valueOf(const Element& input, ir::Type type, const Units& units,
+                               std::string_view port_unit = {});
 
 }  // namespace lacquer::materialx

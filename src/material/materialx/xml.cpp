@@ -216,8 +216,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
     if (const std::string* space = own.find("namespace"))
       for (size_t i = first; i < into.children.size(); ++i) {
         Element& child = into.children[i];
-        const bool may = includes_ || child.category == "nodedef" || child.category == "nodegraph";
-        if (may && child.get("namespace").empty()) child.set("namespace", *space);
+        if (child.get("namespace").empty()) child.set("namespace", *space);
       }
   }
   path_ = outer_path;
