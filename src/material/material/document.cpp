@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <exception>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "gltf/container.h"
@@ -120,6 +122,37 @@ materialx::Names namesOf(const Schema& schema) {
   return names;
 }
 
+constexpr std::string_view kOfProcedurals = "/extensions/KHR_texture_procedurals/procedurals/";
+
+/// Where an animation points to. The text of KHR_texture_procedurals leaves its own name out of the pointers.
+std::string wholePointer(const gltf::AnimatedPointer& pointer) {
+  constexpr std::string_view kShort = "/extensions/procedurals/";
+  if (!pointer.target.starts_with(kShort)) return pointer.target;
+  return std::string(kOfProcedurals) + pointer.target.substr(kShort.size());
+}
+
+/// Says which animations point into procedural textures, and change no number there.
+void checkAnimated(const materialx::Procedurals& procedurals, Document& document) {
+  std::set<std::string_view> changed;
+  for (const graph::Parameter& parameter : procedurals.patterns->parameters)
+    if (parameter.animated) changed.insert(parameter.pointer);
+  for (const gltf::AnimatedPointer& pointer : document.animated) {
+    const std::string whole = wholePointer(pointer);
+    std::string_view number = whole;
+    if (!number.starts_with(kOfProcedurals)) continue;
+    constexpr std::string_view kValue = "/value";
+    if (!changed.contains(number) && number.ends_with(kValue)) number.remove_suffix(kValue.size());
+    if (changed.contains(number)) continue;
+    addBounded(document.diagnostics,
+               {"animation-pointer",
+                Severity::Warning,
+                {document.path, 0, 0, pointer.place},
+                fmt::format("the animation of {} has no effect", quote(pointer.target)),
+                "no number of a procedural texture that one of its outputs takes stands there",
+                {}});
+  }
+}
+
 /// What computes texels in the place of textures, where the file has such a thing.
 materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, const ReadOptions& options,
                                      Document& document) {
@@ -131,14 +164,11 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i)
     needed = needed || (*required)[i] == Json("KHR_texture_procedurals");
   materialx::ProceduralOptions how{options.limits, needed, {}, namesOf(schema), schema.definitions};
-  // The extension's text leaves its own name out of the pointers.
-  constexpr std::string_view kShort = "/extensions/procedurals/";
-  for (const gltf::AnimatedPointer& pointer : document.animated)
-    how.animated.insert(pointer.target.starts_with(kShort)
-                            ? "/extensions/KHR_texture_procedurals/procedurals/" +
-                                  pointer.target.substr(kShort.size())
-                            : pointer.target);
-  return materialx::readProcedurals(*found, document.path, *schema.library, how, document.diagnostics);
+  for (const gltf::AnimatedPointer& pointer : document.animated) how.animated.insert(wholePointer(pointer));
+  materialx::Procedurals made =
+      materialx::readProcedurals(*found, document.path, *schema.library, how, document.diagnostics);
+  checkAnimated(made, document);
+  return made;
 }
 
 /// Patterns look into images as they are, whatever a texture says of their channels.
