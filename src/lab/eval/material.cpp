@@ -163,6 +163,13 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   return Loaded{std::move(*found), {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
 }
 
+/// What is wrong with an image whose name stands in a document, where it stands.
+static Diagnostics inDocument(Diagnostics said, const graph::Texture& texture) {
+  for (Diagnostic& one : said)
+    if (texture.place.line > 0) one.place = texture.place;
+  return said;
+}
+
 Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
   if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
   if (!graph::tileToken(texture.file).empty()) return loadTiles(texture);
@@ -170,7 +177,7 @@ Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
   Result<std::shared_ptr<const eval::Image>> found =
       image("uri " + texture.file, {file_, 0, 0, pointer},
             [&] { return opened_->fileBytes(texture.file, pointer); });
-  if (!found) return tl::make_unexpected(std::move(found.error()));
+  if (!found) return tl::make_unexpected(inDocument(std::move(found.error()), texture));
   const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
   return Loaded{std::move(*found), {wrap(0), wrap(1), texture.nearest, texture.srgb}};
 }
@@ -192,12 +199,12 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
     if (!bytes && bytes.error()[0].code == "image-missing") continue;
     Result<std::shared_ptr<const eval::Image>> found =
         image("uri " + uri, place, [&] { return std::move(bytes); });
-    if (!found) return tl::make_unexpected(std::move(found.error()));
+    if (!found) return tl::make_unexpected(inDocument(std::move(found.error()), texture));
     layers.resize(n + 1);
     layers[n] = std::move(*found);
   }
   if (layers.empty()) {
-    return fail("image-missing", place,
+    return fail("image-missing", texture.place.line > 0 ? texture.place : place,
                 fmt::format("no tile from {} to {} is there", quote(graph::tileFile(texture.file, 0)),
                             quote(graph::tileFile(texture.file, kMostTiles - 1))),
                 {});
