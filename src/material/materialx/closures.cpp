@@ -179,13 +179,6 @@ bool isSaid(const Element& node, std::string_view name) {
 
 }  // namespace
 
-std::optional<Alpha> Patterns::unlit(const Element& surface) {
-  const Element* inner = innermost(surface);
-  if (inner == nullptr || inner->category != "surface_unlit" || definitionOf(*inner) != nullptr)
-    return std::nullopt;
-  return isSaid(*inner, "opacity") || isSaid(*inner, "transmission") ? Alpha::Blend : Alpha::Opaque;
-}
-
 Alpha Patterns::alphaOf(const Element& surface) {
   const Element* inner = innermost(surface);
   if (inner == nullptr) return Alpha::Blend;

@@ -104,27 +104,37 @@ void Flaws::bodies() {
 }
 
 void Flaws::inheritance() {
-  std::set<const Element*> good;
+  std::map<const Element*, size_t> bases;  // how many a definition has behind it; looked up, never walked
   for (const Element& child : root_.children) {
     if (!child.get("target").empty()) continue;  // of other renderers
     std::set<const Element*> seen;
+    std::vector<const Element*> path;
     std::vector<std::string_view> names;
-    for (const Element* at = &child; at->category == "nodedef" && !good.contains(at);) {
+    const Element* at = &child;
+    while (at != nullptr && at->category == "nodedef" && !bases.contains(at)) {
       if (!seen.insert(at).second) {
         add(child, "inherit-cycle", fmt::format("{} inherits from itself", quote(child.name())), {}, names);
+        for (const Element* one : path) bases.emplace(one, 0);
+        path.clear();
         break;
       }
+      path.push_back(at);
       names.push_back(at->name());
       const std::string_view base = at->get("inherit");
-      const Element* found = findNamed(nodedefs_, base);
-      if (base.empty()) break;
-      if (found == nullptr) {
-        missing(*at, base, names);
-        break;
-      }
+      const Element* found = base.empty() ? nullptr : findNamed(nodedefs_, base);
+      if (found == nullptr && !base.empty()) missing(*at, base, names);
       at = found;
     }
-    good.insert(seen.begin(), seen.end());
+    const auto known = bases.find(at);
+    size_t behind = known == bases.end() ? 0 : known->second + 1;
+    for (; !path.empty(); path.pop_back()) {
+      const Element& one = *path.back();
+      bases.emplace(&one, behind);
+      if (behind++ <= kDeepestInheritance) continue;
+      add(one, "inherit-too-deep",
+          fmt::format("{} inherits through more than {} definitions", quote(one.name()), kDeepestInheritance),
+          "inputs of those behind them would be missing", {one.name()});
+    }
   }
 }
 

@@ -22,6 +22,8 @@ void addBareNames(const Element& root, Siblings& nodedefs, Siblings& nodegraphs)
 /// Whether two versions are one: "1" is "1.0".
 bool isOneVersion(std::string_view a, std::string_view b);
 
+inline constexpr size_t kDeepestInheritance = 16;  ///< definitions behind one that inherits
+
 struct Flaw {
   Diagnostic said;
   std::vector<std::string_view> nodedefs;  ///< by their names: those that cannot be taken

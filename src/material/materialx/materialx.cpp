@@ -72,8 +72,6 @@ private:
 
   Found shaderOf(const Element& material);
   void closures(Made& made, const Found& found);
-  void unlit(Made& made, const Element& shader);
-  void procedural(Made& made, const std::string& property) const;
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
   void displacement(const Element& at);
   void refuse(const Element& at, std::string_view name);
@@ -141,7 +139,9 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
           "a node \"surface\" makes a surfaceshader of a BSDF and an EDF");
   } else {
     made.scope = &patterns_.body(*found.owner, fmt::format("{}_material", name));
-    Surface surface(patterns_, *made.scope, *found.shader, made.said);
+    const Element* unlit = translates_ ? patterns_.unlit(*found.owner, *found.shader) : nullptr;
+    const Element& shader = unlit != nullptr ? *unlit : *found.shader;
+    Surface surface(patterns_, *made.scope, shader, made.said);
     const Element* model = patterns_.modelOf(*found.shader);
     const bool own = model != nullptr || patterns_.givesClosure(*found.shader);
     for (const Element& input : found.shader->children) {
@@ -151,12 +151,10 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
       std::optional<Diagnostic> is = port == nullptr ? std::nullopt : Patterns::wrongType(input, *port);
       if (is) made.said.push_back(std::move(*is));
     }
-    if ((translates_ || !own) && translate(surface, found.shader->category)) {
+    if ((translates_ || !own) && translate(surface, shader.category)) {
       made.json = surface.finish(name, made_.size());
       made.outputs = surface.outputs();
       made.error = translationError(made.surface);
-    } else if (translates_ && patterns_.unlit(*found.shader)) {
-      unlit(made, *found.shader);
     } else if (patterns_.givesClosure(*found.shader)) {
       closures(made, found);
     } else {
@@ -192,28 +190,6 @@ void MaterialsReader::closures(Made& made, const Found& found) {
   made.json["doubleSided"] = true;
   if (alpha == Alpha::Blend) made.json["alphaMode"] = "BLEND";
   if (alpha == Alpha::Mask) made.json["alphaMode"] = "MASK";
-}
-
-/// A surface whose definition has no light: its colour is a pattern.
-void MaterialsReader::unlit(Made& made, const Element& shader) {
-  const std::string property = "baseColorTexture";
-  const std::optional<Source> color = patterns_.closure(*made.scope, shader, "emission");
-  const std::optional<Source> alpha = patterns_.closure(*made.scope, shader, "alpha");
-  if (!color || !alpha) return;
-  const Source texel =
-      patterns_.add(*made.scope, property, "texel_of_color", {{"color", *color}, {"a", *alpha}});
-  made.scope->group().outputs.emplace_back(property, texel);
-  made.outputs.emplace_back(property, property);
-  made.json["extensions"]["KHR_materials_unlit"] = Json::object();
-  if (patterns_.unlit(shader) == Alpha::Blend) made.json["alphaMode"] = "BLEND";
-  procedural(made, property);
-}
-
-/// A property's texel is an output of the material's group.
-void MaterialsReader::procedural(Made& made, const std::string& property) const {
-  Json& own = made.json["pbrMetallicRoughness"][property]["extensions"]["KHR_texture_procedurals"];
-  own["index"] = static_cast<uint64_t>(made_.size());
-  own["output"] = property;
 }
 
 /// What moves the vertices, of the material that was made last.
@@ -272,7 +248,9 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
     const Source texel = patterns_.add(*made.scope, "texel", texelOf(type), {{"value", *source}});
     made.scope->group().outputs.emplace_back(property, texel);
     made.outputs.emplace_back(property, property);
-    procedural(made, property);
+    Json& own = made.json["pbrMetallicRoughness"][property]["extensions"]["KHR_texture_procedurals"];
+    own["index"] = static_cast<uint64_t>(made_.size());
+    own["output"] = property;
   }
   made_.push_back(std::move(made));
 }

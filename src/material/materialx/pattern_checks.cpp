@@ -7,6 +7,7 @@
 
 #include "lang/suggest.h"
 #include "materialx/closures.h"
+#include "materialx/looks.h"
 #include "materialx/patterns.h"
 #include "support/say_once.h"
 #include "support/text.h"

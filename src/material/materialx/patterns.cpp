@@ -23,7 +23,6 @@ namespace {
 
 /// Outputs, conversions and swizzles that stand for what is behind them.
 constexpr size_t kMostAliases = 64;
-constexpr size_t kDeepestInheritance = 16;
 
 }  // namespace
 

@@ -102,8 +102,8 @@ public:
   bool givesClosure(const Element& node) const;
   /// What a surface made of closures is to what is behind it, whatever its numbers become.
   Alpha alphaOf(const Element& surface);
-  /// What a surface that is a `surface_unlit` by its definition is to what is behind it; nothing for others.
-  std::optional<Alpha> unlit(const Element& surface);
+  /// The `surface_unlit` that a surface beside the nodes of `owner` is by its definition; null for others.
+  const Element* unlit(const Element& owner, const Element& surface);
   /// The model of a surface; null where the document has a definition, or there is none.
   const Element* modelOf(const Element& surface) const;
   /// The unit of an input of a surface that there is a model for; empty where it says none.
@@ -145,6 +145,7 @@ private:
   };
 
   void define();
+  void define(const Element& nodedef, const Element& graph);
   void defineFrom(const Element& document);
   bool isReplaced(const Element& nodedef) const;
   void findFlaws();
