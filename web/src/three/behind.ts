@@ -1,0 +1,73 @@
+// The scene without what is seen through, for materials that look through: drawn once for each picture that needs it.
+import {
+  HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Matrix4, NoToneMapping, Vector2, WebGLRenderTarget, type Camera, type Material,
+  type Mesh, type Object3D, type Scene, type Texture, type WebGLRenderer,
+} from 'three';
+import type { Values } from '../types.js';
+
+const looksThrough = (object: Object3D): boolean => {
+  const material = (object as Mesh).material as (Material & { looksThrough?: boolean }) | undefined;
+  const all = Array.isArray(material) ? material : [material];
+  return all.some((each) => each?.looksThrough || (each as { transmission?: number } | undefined)?.transmission);
+};
+
+interface Behind {
+  target: WebGLRenderTarget;
+  frame: number;
+  camera: Camera | null;
+}
+const pictures = new WeakMap<WebGLRenderer, Behind>();
+
+function draw(renderer: WebGLRenderer, scene: Scene, camera: Camera, target: WebGLRenderTarget): void {
+  const hidden: Object3D[] = [];
+  scene.traverseVisible((object) => looksThrough(object) && hidden.push(object));
+  const { toneMapping, autoClear, xr, shadowMap } = renderer;
+  const before = { target: renderer.getRenderTarget(), xr: xr.enabled, shadows: shadowMap.autoUpdate };
+  for (const object of hidden) object.visible = false;
+  renderer.toneMapping = NoToneMapping;
+  renderer.autoClear = true;
+  xr.enabled = false; // the camera is one eye's already
+  shadowMap.autoUpdate = false;
+  renderer.setRenderTarget(target);
+  try {
+    renderer.render(scene, camera);
+  } finally {
+    renderer.setRenderTarget(before.target);
+    Object.assign(renderer, { toneMapping, autoClear });
+    xr.enabled = before.xr;
+    shadowMap.autoUpdate = before.shadows;
+    for (const object of hidden) object.visible = true;
+  }
+}
+
+/** The texture scene_behind and the block SeeThrough. */
+export function sceneBehind(renderer: WebGLRenderer, scene: Scene, camera: Camera): { texture: Texture; values: Values } {
+  let behind = pictures.get(renderer);
+  if (!behind) {
+    const target = new WebGLRenderTarget(1, 1, {
+      type: HalfFloatType, generateMipmaps: true, minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter, samples: 4,
+    });
+    behind = { target, frame: -1, camera: null };
+    pictures.set(renderer, behind);
+  }
+  const { target } = behind;
+  const frame = renderer.info.render.frame;
+  if (behind.frame !== frame || behind.camera !== camera) {
+    const size = renderer.getDrawingBufferSize(new Vector2());
+    target.setSize(size.x, size.y);
+    draw(renderer, scene, camera, target);
+    // Drawing it was a frame, too.
+    Object.assign(behind, { frame: renderer.info.render.frame, camera });
+  }
+  const m = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
+  const row = (make: (x: number, y: number, w: number) => number) => [0, 1, 2, 3].map((i) => make(m[4 * i], m[4 * i + 1], m[4 * i + 3]));
+  return {
+    texture: target.texture,
+    values: {
+      scene_u: row((x, _, w) => (x + w) / 2),
+      scene_v: row((_, y, w) => (y + w) / 2),
+      scene_w: row((_x, _y, w) => w),
+      scene_max_lod: Math.floor(Math.log2(Math.max(target.width, target.height))),
+    },
+  };
+}

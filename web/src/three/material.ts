@@ -1,0 +1,313 @@
+// A material of three.js whose shader is Lacquer's.
+import {
+  DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, Material, Matrix4, Quaternion, RGBAFormat, ShaderMaterial, UniformsLib,
+  UniformsUtils, Vector2, type BufferAttribute, type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh,
+  type Texture, type WebGLRenderer,
+} from 'three';
+import type { Graph, Lacquer, Shader } from '../index.js';
+import type { Attribute, Field, Interface, Message, Options, Parameter, Values } from '../types.js';
+import { environmentIn, tablesOf, type Environment } from './environment.js';
+import { lightsOf } from './lights.js';
+import { sceneBehind } from './behind.js';
+import { instancesOf, threeText } from './text.js';
+
+/** The attributes of a mesh that its shader may use. */
+export function attributesOf(mesh: Mesh): Attribute[] {
+  const { attributes, morphAttributes } = mesh.geometry;
+  const named: [string, Attribute][] = [
+    ['normal', 'NORMAL'], ['tangent', 'TANGENT'], ['color', 'COLOR_0'], ['uv', 'TEXCOORD_0'], ['uv1', 'TEXCOORD_1'],
+    ['uv2', 'TEXCOORD_2'], ['uv3', 'TEXCOORD_3'],
+  ];
+  const has = named.filter(([name]) => attributes[name]).map(([, attribute]) => attribute);
+  if ((mesh as SkinnedMesh).isSkinnedMesh) has.push('JOINTS_0', ...(attributes.joints_1 ? ['JOINTS_1' as const] : []));
+  if (Object.keys(morphAttributes).length > 0) has.push('MORPH_TARGETS');
+  return has;
+}
+
+type Uniform = number | number[] | Float32Array;
+const kCounts: Record<string, number> = { float: 1, int: 1, uint: 1, bool: 1, vec2: 2, vec3: 3, vec4: 4, mat4: 16 };
+
+/** What a field of a block is in its bytes. */
+function fieldOf(bytes: Uint8Array, { type, offset, array = 1, stride = 0 }: Field): Uniform {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const count = kCounts[type];
+  const at = (i: number) => offset + Math.floor(i / count) * stride + 4 * (i % count);
+  const whole = type === 'int' || type === 'bool' || type === 'uint';
+  const numbers = Array.from({ length: count * array }, (_, i) => (whole ? view.getInt32(at(i), true) : view.getFloat32(at(i), true)));
+  return numbers.length === 1 ? numbers[0] : numbers;
+}
+
+const kZeros = (fields: Field[]): Record<string, Uniform> =>
+  Object.fromEntries(fields.map(({ name, type, array = 1 }) => {
+    const count = kCounts[type] * array;
+    return [name, count === 1 ? 0 : new Array<number>(count).fill(0)];
+  }));
+
+/** One texel in the place of an image that is not there. */
+function texel(rgba: [number, number, number, number]): DataTexture {
+  const texture = new DataTexture(new Uint8Array(rgba), 1, 1);
+  texture.needsUpdate = true;
+  return texture;
+}
+let white: DataTexture | undefined;
+let flat: DataTexture | undefined;
+const standIn = (content?: string): Texture =>
+  content === 'normal' ? (flat ??= texel([128, 128, 255, 255])) : (white ??= texel([255, 255, 255, 255]));
+
+/** What is made of a graph once, and shared by clones. */
+interface Made {
+  graph: Graph;
+  shader: Shader;
+  interface: Interface;
+  /** The uniforms that blocks are. */
+  instances: Map<string, string>;
+  text: Record<'vertex' | 'fragment', string>;
+}
+
+function make(graph: Graph, options: Options, messages: Message[]): Made {
+  const shader = graph.generate({ ...options, targets: ['essl'] }, messages);
+  const about = shader.interface;
+  const essl = { vertex: shader.text('essl', 'vertex'), fragment: shader.text('essl', 'fragment') };
+  return {
+    graph, shader, interface: about,
+    instances: new Map([...instancesOf(essl.vertex), ...instancesOf(essl.fragment)]),
+    text: { vertex: threeText(essl.vertex, 'vertex', about), fragment: threeText(essl.fragment, 'fragment', about) },
+  };
+}
+
+export interface MaterialOptions {
+  /** The pictures of the shader's texture slots, by their names (`graph.textures()`); three.js's own colour spaces hold. */
+  textures?: Record<string, Texture | null>;
+  /** How the shader is made; the templates `forward` and what extends it are drawn. */
+  options?: Options;
+  messages?: Message[];
+}
+
+/** Draws a graph. It has the lights, the fog, the tone mapping and the colour space of the renderer and its scene, skins, morph
+ * targets and instances; the surroundings are those of setEnvironment(). Shadows fall from it, but not on it. */
+export class LacquerMaterial extends ShaderMaterial {
+  readonly isLacquerMaterial = true;
+  /** Instead of the scene's. */
+  environment: Environment | null = null;
+  /** The scene is drawn behind it once a frame, when it is seen through. */
+  readonly looksThrough: boolean;
+  private readonly made: Made;
+  private readonly values: Record<string, number | number[]> = {};
+  private readonly objects = new WeakMap<Object3D, ObjectTextures>();
+  private readonly textures: ObjectTextures[] = [];
+  private drawn = { frame: -1, camera: null as Camera | null };
+
+  constructor(
+    private readonly lacquer: Lacquer,
+    graph: Graph,
+    { textures = {}, options = {}, messages = [] }: MaterialOptions = {},
+    made = make(graph, options, messages),
+  ) {
+    super({ glslVersion: GLSL3, vertexShader: made.text.vertex, fragmentShader: made.text.fragment, fog: true });
+    this.type = 'LacquerMaterial';
+    this.made = made;
+    this.name = made.shader.id;
+    for (const block of made.interface.uniforms) {
+      const name = made.instances.get(block.block);
+      if (name) this.uniforms[name] = { value: block.array ? [] : kZeros(block.fields) };
+    }
+    for (const { name, content } of made.interface.textures) this.uniforms[name] = { value: textures[name] ?? standIn(content) };
+    for (const [name, table] of Object.entries(tablesOf(lacquer))) if (this.uniforms[name]) this.uniforms[name].value = table;
+    Object.assign(this.uniforms, UniformsUtils.clone(UniformsLib.fog));
+    this.looksThrough = made.instances.has('SeeThrough');
+    this.set({});
+    this.addEventListener('dispose', () => this.textures.splice(0).forEach((each) => each.dispose()));
+  }
+
+  /** The numbers that set() takes. */
+  parameters(): Parameter[] {
+    return this.made.graph.parameters();
+  }
+  /** Gives parameters other values: no program is made for it. Throws where a name is no parameter's. */
+  set(values: Record<string, number | number[]>): void {
+    const known = new Set(this.made.graph.parameters().map(({ name }) => name));
+    const unknown = Object.keys(values).find((name) => !known.has(name));
+    if (unknown) throw new RangeError(`the material has no parameter ${unknown}; it has ${[...known].join(', ') || 'none'}`);
+    Object.assign(this.values, values);
+    const block = this.made.interface.uniforms.find(({ block }) => block === 'Material');
+    if (!block) return;
+    const bytes = this.made.shader.pack(this.values);
+    this.fill('Material', Object.fromEntries(block.fields.map((field) => [field.name, fieldOf(bytes, field)])));
+  }
+  /** Another picture for a slot; null for a neutral one. */
+  setTexture(slot: string, texture: Texture | null): void {
+    const of = this.made.interface.textures.find(({ name, role }) => name === slot && role === 'material');
+    if (!of) throw new RangeError(`the shader reads no texture ${slot}`);
+    this.uniforms[slot].value = texture ?? standIn(of.content);
+    this.uniformsNeedUpdate = true;
+  }
+
+  /** Shares the program, and has numbers of its own. */
+  override clone(): this {
+    const textures = Object.fromEntries(this.made.interface.textures.map(({ name }) => [name, this.uniforms[name].value as Texture]));
+    const other = new LacquerMaterial(this.lacquer, this.made.graph, { textures }, this.made);
+    Material.prototype.copy.call(other, this);
+    other.environment = this.environment;
+    other.set(this.values);
+    return other as this;
+  }
+
+  override onBeforeRender(renderer: WebGLRenderer, scene: Scene, camera: Camera, _: BufferGeometry, object: Object3D): void {
+    const { frame } = renderer.info.render;
+    if (this.drawn.frame !== frame || this.drawn.camera !== camera) {
+      this.drawn = { frame, camera };
+      this.fillFrame(renderer, scene, camera, frame);
+    }
+    this.fillObject(object as Mesh);
+  }
+
+  private fill(block: string, values: Values): void {
+    const name = this.made.instances.get(block);
+    if (!name) return;
+    Object.assign(this.uniforms[name].value as object, values);
+    this.uniformsNeedUpdate = true;
+  }
+
+  private fillFrame(renderer: WebGLRenderer, scene: Scene, camera: Camera, frame: number): void {
+    const lights = this.made.instances.get('Lights');
+    const size = this.made.interface.uniforms.find(({ block }) => block === 'Lights')?.array ?? 0;
+    const { elements, count } = lights ? lightsOf(renderer, scene, camera, size) : { elements: [], count: 0 };
+    if (lights) this.uniforms[lights].value = elements;
+    const environment = this.environment ?? environmentIn(scene);
+    for (const [name, texture] of Object.entries(environment.textures)) if (this.uniforms[name]) this.uniforms[name].value = texture;
+    const { environmentIntensity = 1, environmentRotation } = scene;
+    this.fill('Frame', { environment_intensity: environmentIntensity, environment_max_lod: environment.levels, light_count: count });
+    if (environmentRotation) {
+      const turn = new Quaternion().setFromEuler(environmentRotation).invert();
+      this.fill('EnvironmentTurn', { rotation: turn.toArray() });
+    }
+    this.fill('Clock', { time: (performance.now() / 1000) % kLongestTime, frame: frame % kLongestTime });
+    if (this.looksThrough) {
+      const { texture, values } = sceneBehind(renderer, scene, camera);
+      this.uniforms.scene_behind.value = texture;
+      this.fill('SeeThrough', values);
+    }
+    this.uniformsNeedUpdate = true;
+  }
+
+  private fillObject(mesh: Mesh): void {
+    const { instances } = this.made;
+    if (!instances.has('Skin') && !instances.has('Morph')) return;
+    let own = this.objects.get(mesh);
+    if (!own) {
+      own = new ObjectTextures(mesh);
+      this.objects.set(mesh, own);
+      this.textures.push(own);
+    }
+    if (instances.has('Skin')) {
+      this.uniforms.joint_matrices.value = own.skin();
+      this.fill('Skin', { joint_count: (mesh as SkinnedMesh).skeleton.bones.length, joint_scale: 1 });
+    }
+    if (instances.has('Morph')) {
+      this.uniforms.morph_deltas.value = own.morph();
+      this.fill('Morph', own.weights());
+    }
+  }
+}
+
+/** A float counts whole numbers to here. */
+const kLongestTime = 16_777_216;
+const kMostTargets = 8;
+const kRow = 1024;
+
+/** What the vertex stage of one object reads: its skeleton's matrices, its morph targets. */
+class ObjectTextures {
+  private joints: DataTexture | null = null;
+  private deltas: DataArrayTexture | null = null;
+  private readonly size = new Vector2();
+  constructor(private readonly mesh: Mesh) {}
+
+  dispose(): void {
+    this.joints?.dispose();
+    this.deltas?.dispose();
+    this.joints = this.deltas = null;
+  }
+
+  /** A row for each joint: three rows of the matrix from the mesh to where three.js's `modelMatrix` begins. */
+  skin(): DataTexture {
+    const { skeleton, bindMatrix, bindMatrixInverse } = this.mesh as SkinnedMesh;
+    const count = skeleton.bones.length;
+    this.joints ??= new DataTexture(new Float32Array(16 * count), 4, count, RGBAFormat, FloatType);
+    const data = this.joints.image.data as Float32Array;
+    const matrix = new Matrix4();
+    const bone = new Matrix4();
+    for (let i = 0; i < count; ++i) {
+      bone.fromArray(skeleton.boneMatrices as unknown as number[], 16 * i);
+      const m = matrix.multiplyMatrices(bindMatrixInverse, bone).multiply(bindMatrix).elements;
+      for (let row = 0; row < 3; ++row) for (let column = 0; column < 4; ++column) data[16 * i + 4 * row + column] = m[4 * column + row];
+    }
+    this.joints.needsUpdate = true;
+    return this.joints;
+  }
+
+  /** Of each target its differences of positions, normals and tangents. */
+  morph(): DataArrayTexture {
+    if (this.deltas) return this.deltas;
+    const { attributes, morphTargetsRelative } = this.mesh.geometry;
+    const morphAttributes = this.mesh.geometry.morphAttributes as Record<string, BufferAttribute[] | undefined>;
+    const vertices = attributes.position.count;
+    this.size.set(Math.min(vertices, kRow), Math.ceil(vertices / kRow));
+    const kinds = ['position', 'normal', 'tangent'];
+    const targets = Math.max(...kinds.map((kind) => morphAttributes[kind]?.length ?? 0));
+    const texels = this.size.x * this.size.y;
+    const data = new Float32Array(4 * texels * 3 * targets);
+    for (let target = 0; target < targets; ++target) {
+      kinds.forEach((kind, k) => {
+        const to = morphAttributes[kind]?.[target];
+        if (!to) return;
+        const from = morphTargetsRelative ? null : (attributes[kind] as BufferAttribute);
+        const start = 4 * texels * (3 * target + k);
+        for (let v = 0; v < vertices; ++v) {
+          for (let i = 0; i < 3; ++i) data[start + 4 * v + i] = to.getComponent(v, i) - (from?.getComponent(v, i) ?? 0);
+        }
+      });
+    }
+    this.deltas = new DataArrayTexture(data, this.size.x, this.size.y, 3 * targets);
+    this.deltas.type = FloatType;
+    this.deltas.needsUpdate = true;
+    return this.deltas;
+  }
+
+  /** Of the targets that count most. */
+  weights(): Values {
+    const influences = this.mesh.morphTargetInfluences ?? [];
+    const most = influences.map((weight, target) => ({ weight, target }))
+      .sort((a, b) => Math.abs(b.weight) - Math.abs(a.weight)).slice(0, kMostTargets);
+    const padded = (pick: (of: { weight: number; target: number }) => number) =>
+      Array.from({ length: kMostTargets }, (_, i) => (most[i] ? pick(most[i]) : 0));
+    return { weights: padded(({ weight }) => weight), targets: padded(({ target }) => target), width: this.size.x, height: this.size.y };
+  }
+}
+
+/** The look of a glTF material (its JSON) on a mesh. `textures` are the file's, by the indices that the JSON has. */
+export function materialFrom(
+  lacquer: Lacquer,
+  json: object,
+  mesh: Mesh,
+  { textures = [], options = {}, messages = [] }: { textures?: Texture[]; options?: Options; messages?: Message[] } = {},
+): LacquerMaterial {
+  const images = textures.map((_, i) => ({ uri: `${i}.png` }));
+  const file = { asset: { version: '2.0' }, materials: [json], images, textures: textures.map((_, source) => ({ source })) };
+  const scene = lacquer.scene(JSON.stringify(file), 'material.gltf', options, messages);
+  try {
+    const graph = scene.graph(0, options, attributesOf(mesh), messages);
+    const slots = Object.fromEntries(graph.textures().map(({ name, texture }) => [name, textures[texture] ?? null]));
+    return withStates(new LacquerMaterial(lacquer, graph, { textures: slots, options, messages }), json);
+  } finally {
+    scene.free();
+  }
+}
+
+/** What of a glTF material is no matter of its shader. */
+export function withStates<T extends Material>(material: T, json: { alphaMode?: string; doubleSided?: boolean; name?: string }): T {
+  material.transparent = json.alphaMode === 'BLEND';
+  material.depthWrite = json.alphaMode !== 'BLEND';
+  if (json.doubleSided) material.side = DoubleSide;
+  if (json.name) material.name = json.name;
+  return material;
+}

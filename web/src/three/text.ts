@@ -1,0 +1,95 @@
+// The text of a shader as three.js takes it: three.js declares the vertex attributes that it knows, sets plain uniforms and no
+// blocks, and has a main() that ends with what the renderer does to colours.
+import type { Interface } from '../types.js';
+
+/** The names that three.js's geometries have for glTF's attributes. `under`: the define under which three.js declares it; an
+ * empty one: always. */
+const kAttributes: Record<string, { name: string; under?: string }> = {
+  POSITION: { name: 'position', under: '' },
+  NORMAL: { name: 'normal', under: '' },
+  TANGENT: { name: 'tangent', under: 'USE_TANGENT' },
+  TEXCOORD_0: { name: 'uv', under: '' },
+  TEXCOORD_1: { name: 'uv1', under: 'USE_UV1' },
+  TEXCOORD_2: { name: 'uv2', under: 'USE_UV2' },
+  TEXCOORD_3: { name: 'uv3', under: 'USE_UV3' },
+  COLOR_0: { name: 'color' },
+  JOINTS_0: { name: 'skinIndex', under: 'USE_SKINNING' },
+  WEIGHTS_0: { name: 'skinWeight', under: 'USE_SKINNING' },
+};
+/** Of an attribute of the file's own that of glTF, in lower case. */
+export const attributeName = (semantic: string): string => kAttributes[semantic]?.name ?? semantic.toLowerCase();
+
+/** What three.js says of an object and a camera, in the fields of the blocks that have it. */
+const kGiven: Record<string, Record<string, string>> = {
+  Frame: { view_projection: 'projectionMatrix * viewMatrix', camera_position: 'cameraPosition' },
+  Object: { model: 'modelMatrix', normal_matrix: 'mat4(transpose(mat3(viewMatrix)) * normalMatrix)' },
+};
+const kInstances = [
+  '#ifdef USE_INSTANCING',
+  'object.model = object.model * instanceMatrix;',
+  'object.normal_matrix = object.normal_matrix * mat4(transpose(inverse(mat3(instanceMatrix))));',
+  '#endif',
+];
+
+const kBlock = /^layout\(std140\) uniform (\w+) \{\n((?: {4}.*\n)*)\}(?: (\w+))?;$/gm;
+const kInput = /^(?:layout\(location = (\d+)\) )in (\w+) (in_\w+);$/gm;
+
+/** Declares what three.js does not, in the place of a block or an attribute, and says with what the variable that stands for it
+ * is filled. */
+class Rewriting {
+  readonly fill: string[] = [];
+  constructor(private readonly vertex: boolean, private readonly shader: Interface) {}
+
+  input = (_: string, location: string, type: string, variable: string): string => {
+    const semantic = this.shader.inputs?.find((input) => input.location === Number(location))?.name ?? variable;
+    if (semantic === 'MORPH_VERTEX') {
+      this.fill.push(`${variable} = ${type}(gl_VertexID);`);
+      return `${type} ${variable};`;
+    }
+    const name = attributeName(semantic);
+    const { under } = kAttributes[semantic] ?? {};
+    this.fill.push(`${variable} = ${name};`);
+    const declared = `in ${type} ${name};\n`;
+    const once = under === '' ? '' : under ? `#ifndef ${under}\n${declared}#endif\n` : declared;
+    return `${once}${type} ${variable};`;
+  };
+
+  block = (_: string, block: string, members: string, instance: string | undefined): string => {
+    if (!instance) return `uniform ${members.trim()}`; // an array of structs that stand before it
+    const struct = `struct ${block}Block {\n${members}};\nuniform ${block}Block`;
+    const given = kGiven[block];
+    if (!given) return `${struct} ${instance};`;
+    this.fill.push(`${instance} = given_${instance};`);
+    for (const [field, value] of Object.entries(given)) {
+      if (this.vertex || field === 'camera_position') this.fill.push(`${instance}.${field} = ${value};`);
+    }
+    if (this.vertex && block === 'Object') this.fill.push(...kInstances);
+    return `${struct} given_${instance};\n${block}Block ${instance};`;
+  };
+}
+
+/** The name of the uniform that a block is; its fields are its value's. */
+export const uniformOf = (block: string, instance: string): string => (kGiven[block] ? `given_${instance}` : instance);
+
+/** The instances of a stage's blocks, by their names; of an array its name. */
+export function instancesOf(essl: string): Map<string, string> {
+  return new Map([...essl.matchAll(kBlock)].map(([, block, members, instance]) => {
+    const array = /(\w+)\[\d+\];/.exec(members)?.[1] ?? '';
+    return [block, uniformOf(block, instance ?? array)];
+  }));
+}
+
+/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, fog, tone mapping and colour spaces are added. */
+export function threeText(essl: string, stage: 'vertex' | 'fragment', shader: Interface): string {
+  const vertex = stage === 'vertex';
+  const to = new Rewriting(vertex, shader);
+  const bare = essl.replace(/^#version.*\n/, '').replace('void main() {', 'void surface() {');
+  const text = (vertex ? bare.replace(kInput, to.input) : bare).replace(kBlock, to.block);
+  const main = ['void main() {', ...to.fill.map((line) => (line.startsWith('#') ? line : `    ${line}`)), '    surface();'];
+  if (vertex) {
+    return ['#include <fog_pars_vertex>', text, ...main, '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '}', ''].join('\n');
+  }
+  const ends = ['tonemapping', 'colorspace', 'fog', 'premultiplied_alpha'].map((chunk) => `#include <${chunk}_fragment>`);
+  const [color] = shader.outputs as { name: string }[];
+  return ['#include <fog_pars_fragment>', text, `#define gl_FragColor out_${color.name}`, ...main, ...ends, '}', ''].join('\n');
+}

@@ -1,0 +1,430 @@
+// Lacquer's materials in three.js, as web/package-lock.json has it: their colours beside the library's own, and what a
+// renderer's scene brings along.
+import assert from 'node:assert/strict';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, dirname, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { kPatience, kSlow, launch, listen, serve } from './browser.mjs';
+import { inputs, output, read, realFiles, root } from './native.mjs';
+
+const kModules = {
+  three: './node_modules/three/build/three.module.js',
+  'three/addons/': './node_modules/three/examples/jsm/',
+  '@lacquer-shaders/lacquer': './node_modules/@lacquer-shaders/lacquer/index.js',
+  '@lacquer-shaders/lacquer/three': './node_modules/@lacquer-shaders/lacquer/three.js',
+};
+const kPage = `<!doctype html><meta charset="utf-8"><title>three</title><link rel="icon" href="data:,">
+<script type="importmap">${JSON.stringify({ imports: kModules })}</script>
+<canvas width="64" height="64"></canvas><script type="module" src="harness.js"></script>`;
+
+/** Bytes of the real files that are drawn: larger ones take software minutes. */
+const kLargest = 2 ** 21;
+/** What GLTFLoader says of what it does not know itself. */
+const kLoaders = /^THREE.GLTFLoader: Unknown extension|GPU stall/;
+
+/** In the page: the modules as globals, and what the tests share. */
+const kHarness = `
+import * as THREE from 'three';
+import * as lacquered from '@lacquer-shaders/lacquer/three';
+import { load } from '@lacquer-shaders/lacquer';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+const canvas = document.querySelector('canvas');
+const renderer = new THREE.WebGLRenderer({ canvas });
+Object.assign(window, { THREE, lacquered, GLTFLoader, renderer, lacquer: await load() });
+/** A scene's linear colours, row by row from below. */
+window.colours = (scene, camera, size = 8) => {
+  const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
+  renderer.setRenderTarget(target);
+  renderer.render(scene, camera);
+  const rgba = new Float32Array(4 * size * size);
+  renderer.readRenderTargetPixels(target, 0, 0, size, size, rgba);
+  renderer.setRenderTarget(null);
+  target.dispose();
+  const error = renderer.getContext().getError();
+  if (error !== 0) throw new Error('WebGL says ' + error);
+  return Array.from(rgba);
+};
+/** A quad of two units in the plane z = 0, seen from z = 3 through a field of 1.5 units there. */
+window.quad = () => {
+  const geometry = new THREE.PlaneGeometry(2, 2);
+  geometry.setAttribute('tangent', new THREE.Float32BufferAttribute(Array.from({ length: 16 }, (_, i) => (i % 4 === 0 || i % 4 === 3 ? 1 : 0)), 4));
+  return new THREE.Mesh(geometry);
+};
+window.camera = () => {
+  const camera = new THREE.OrthographicCamera(-0.75, 0.75, 0.75, -0.75, 0.1, 10);
+  camera.position.z = 3;
+  return camera;
+};
+window.lamp = () => {
+  const lamp = new THREE.DirectionalLight(new THREE.Color(1, 0.9, 0.8), 2);
+  lamp.position.set(0.3, 0.5, 0.9);
+  return lamp;
+};
+document.title = 'ready';
+`;
+
+let browser;
+let server;
+let folder;
+let page;
+let watched;
+before(async () => {
+  browser = await launch();
+  folder = mkdtempSync(join(tmpdir(), 'lacquer-three-'));
+  mkdirSync(join(folder, 'node_modules/@lacquer-shaders'), { recursive: true });
+  symlinkSync(join(root, 'web/node_modules/three'), join(folder, 'node_modules/three'));
+  symlinkSync(join(output, 'package'), join(folder, 'node_modules/@lacquer-shaders/lacquer'));
+  writeFileSync(join(folder, 'index.html'), kPage);
+  writeFileSync(join(folder, 'harness.js'), kHarness);
+  cpSync(join(root, 'web/examples/three'), join(folder, 'three'), { recursive: true });
+  symlinkSync('../node_modules', join(folder, 'three/node_modules'));
+  const [real] = realFiles();
+  if (real) symlinkSync(dirname(dirname(real)), join(folder, 'assets'));
+  cpSync(join(root, 'examples'), join(folder, 'examples'), { recursive: true, filter: (name) => !/\.(cpp|h|txt)$/.test(name) });
+  server = await serve(folder);
+  page = await browser.newPage();
+  watched = listen(page, kSlow);
+  await page.goto(`${server.url}/index.html`, { timeout: kPatience });
+  await watched.unlessItFails(page.waitForFunction(() => document.title === 'ready', null, { timeout: kPatience }));
+});
+after(async () => {
+  await browser?.close();
+  server?.close();
+  if (folder) rmSync(folder, { recursive: true });
+});
+
+/** Runs in the page; what the console says there fails the test, but for what `expected` matches. */
+async function inPage(run, argument, expected = /^$/) {
+  const from = watched.said.length;
+  const result = await watched.unlessItFails(page.evaluate(run, argument));
+  assert.deepEqual(watched.said.slice(from).filter((text) => !expected.test(text)), []);
+  return result;
+}
+
+/** The colours of a material of a file without its pictures on a quad, and the library's own at the same points. */
+async function besideTheLibrary({ text, material, texel, environment }) {
+  const file = JSON.parse(text);
+  const size = 8;
+  const messages = [];
+  const mesh = quad();
+  const look = file.materials[material];
+  const pictures = (file.textures ?? []).map(() => {
+    const picture = new THREE.DataTexture(new Uint8Array(texel), 1, 1);
+    picture.needsUpdate = true;
+    return picture;
+  });
+  mesh.material = lacquered.materialFrom(lacquer, look, mesh, { textures: pictures, messages });
+  mesh.material.side = THREE.DoubleSide;
+  mesh.material.blending = THREE.NoBlending;
+  const scene = new THREE.Scene();
+  const light = lamp();
+  scene.add(mesh, light);
+  if (environment) lacquered.setEnvironment(scene, environment);
+  const drawn = colours(scene, camera(), size);
+  const l = light.position.clone().normalize().toArray();
+  const radiance = light.color.toArray().map((x) => x * light.intensity);
+  const points = Array.from({ length: size * size }, (_, i) => {
+    const [x, y] = [i % size, Math.floor(i / size)].map((at) => ((at + 0.5) / size - 0.5) * 1.5);
+    const eye = new THREE.Vector3(-x, -y, 3).normalize().toArray();
+    return { n: [0, 0, 1], t: [1, 0, 0, 1], v: eye, l, light: radiance, uv0: [x / 2 + 0.5, y / 2 + 0.5], position: [x, y, 0] };
+  });
+  const images = (file.textures ?? []).map((_, i) => ({ uri: `${i}.png` }));
+  const alone = { asset: file.asset, materials: [look], images, textures: images.map((_, source) => ({ source })) };
+  const graph = lacquer.scene(JSON.stringify(alone), 'a.gltf').graph(0, {}, lacquered.attributesOf(mesh));
+  const texels = graph.textures().map(({ name }) => `${name}=${texel.map((x) => x / 255).join()}`);
+  const { rgba } = graph.evaluate(points, { texels, ibl: false });
+  mesh.material.dispose();
+  return { drawn, expected: rgba.flat(), names: graph.textures().map(({ name }) => name), lod: mesh.material.looksThrough };
+}
+
+/** Floats may be off where a highlight is steep; nearly all of it is alike to what logarithms of software are good for. */
+function assertAlike(drawn, expected, what) {
+  const off = [];
+  for (let i = 0; i < expected.length; ++i) {
+    if (i % 4 === 3) continue;
+    const error = Math.abs(drawn[i] - expected[i]) / (1 + Math.abs(expected[i]));
+    assert.ok(error < 0.02, `${what}: component ${i} is ${drawn[i]}, not ${expected[i]}`);
+    off.push(error);
+  }
+  const middle = off.sort((a, b) => a - b)[Math.floor(off.length / 2)];
+  assert.ok(middle < 5e-4, `${what}: off by ${middle} in the middle`);
+}
+
+test('materials have the colours of the library under a lamp', async () => {
+  let compared = 0;
+  for (const file of inputs().filter((name) => name.startsWith('examples/') || name.startsWith('bench/'))) {
+    const text = read(file).toString();
+    const { materials } = JSON.parse(text);
+    for (let material = 0; material < materials.length; ++material) {
+      const { drawn, expected, lod } = await inPage(besideTheLibrary, { text, material, texel: [255, 255, 255, 255] });
+      if (lod) continue; // what is behind is the scene's
+      assertAlike(drawn, expected, `${file} ${materials[material].name}`);
+      ++compared;
+    }
+  }
+  assert.ok(compared > 20, `${compared}`);
+});
+
+test('pictures reach their slots, in their colour spaces', async () => {
+  const text = read('examples/core.gltf').toString();
+  const { materials } = JSON.parse(text);
+  const material = materials.findIndex((each) => JSON.stringify(each).includes('Texture'));
+  const { drawn, expected, names } = await inPage(besideTheLibrary, { text, material, texel: [200, 120, 180, 255] });
+  assert.ok(names.length > 0);
+  assertAlike(drawn, expected, materials[material].name);
+});
+
+test('surroundings light a scene, turned and dimmed as three.js has it', async () => {
+  const at = await inPage(() => {
+    const [width, height] = [64, 32];
+    const data = new Float32Array(4 * width * height);
+    // One where +x is, nothing elsewhere.
+    for (let i = 0; i < width * height; ++i) data.set(i % width > width / 4 && i % width < (3 * width) / 4 ? [2, 1, 0.5, 1] : [0, 0, 0, 1], 4 * i);
+    const picture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.FloatType);
+    const form = { size: 32, samples: 64 };
+    const environment = lacquered.environmentOf(lacquer, picture, form);
+    const mesh = quad();
+    const white = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } };
+    const options = { switches: { turned_environment: true } };
+    mesh.material = lacquered.materialFrom(lacquer, white, mesh, { options });
+    const scene = new THREE.Scene();
+    scene.add(mesh);
+    const middle = () => colours(scene, camera(), 1).slice(0, 3);
+    const dark = middle();
+    lacquered.setEnvironment(scene, environment);
+    const half = middle();
+    scene.environmentIntensity = 0.5;
+    const dimmed = middle();
+    scene.environmentIntensity = 1;
+    // The bright side is brought to +z, towards the viewer, and then away.
+    scene.environmentRotation.y = -Math.PI / 2;
+    const bright = middle();
+    scene.environmentRotation.y = Math.PI / 2;
+    const away = middle();
+    lacquered.setEnvironment(scene, null);
+    return { dark, half, dimmed, bright, away, none: middle() };
+  });
+  assert.deepEqual(at.dark, [0, 0, 0]);
+  assert.deepEqual(at.none, [0, 0, 0]);
+  assert.ok(at.half[0] > 0.8 && at.half[0] < 1.2, `${at.half}`);
+  at.dimmed.forEach((x, i) => assert.ok(Math.abs(x - at.half[i] / 2) < 1e-3));
+  assert.ok(at.bright[0] > 1.6, `${at.bright}`);
+  assert.ok(at.away[0] < 0.3, `${at.away}`);
+});
+
+test('numbers change without a program, and what was made is given back', async () => {
+  const at = await inPage(() => {
+    const mesh = quad();
+    mesh.material = lacquered.materialFrom(lacquer, { extensions: { KHR_materials_clearcoat: { clearcoatFactor: 1 } } }, mesh);
+    const scene = new THREE.Scene();
+    scene.add(mesh, lamp());
+    const first = colours(scene, camera());
+    const { programs } = renderer.info;
+    const one = programs.length;
+    mesh.material.set({ base_color_factor: [0.1, 0.2, 0.3, 1] });
+    const second = colours(scene, camera());
+    const other = mesh.clone();
+    other.material = mesh.material.clone();
+    other.material.set({ base_color_factor: [1, 1, 1, 1] });
+    scene.remove(mesh);
+    scene.add(other);
+    const third = colours(scene, camera());
+    const still = programs.length;
+    let refused = '';
+    try {
+      mesh.material.set({ base_colour: 1 });
+    } catch (error) {
+      refused = String(error);
+    }
+    mesh.material.dispose();
+    other.material.dispose();
+    return { first, second, third, one, still, left: programs.length, refused, names: mesh.material.parameters().map(({ name }) => name) };
+  });
+  assert.equal(at.still, at.one);
+  assert.equal(at.left, at.one - 1);
+  assert.ok(at.second[0] < at.first[0] / 2);
+  assert.deepEqual(at.third, at.first);
+  assert.match(at.refused, /no parameter base_colour; it has .*base_color_factor/);
+  assert.ok(at.names.includes('base_color_factor'));
+});
+
+/** Where a mesh is seen, by its own material and by one of three.js: an array of both. */
+async function covered(kind) {
+  const base = quad();
+  const { geometry } = base;
+  let mesh = base;
+  if (kind === 'skin') {
+    const bones = [new THREE.Bone(), new THREE.Bone()];
+    geometry.setAttribute('skinIndex', new THREE.Uint16BufferAttribute([0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0], 4));
+    geometry.setAttribute('skinWeight', new THREE.Float32BufferAttribute([1, 0, 0, 0, 0.5, 0.5, 0, 0, 1, 0, 0, 0, 0.25, 0.75, 0, 0], 4));
+    mesh = new THREE.SkinnedMesh(geometry);
+    bones.forEach((bone) => mesh.add(bone));
+    mesh.position.x = 0.1;
+    mesh.updateMatrixWorld(true);
+    mesh.bind(new THREE.Skeleton(bones));
+    bones[0].rotation.z = 0.4;
+    bones[1].position.set(0.3, -0.2, 0);
+    bones[1].scale.setScalar(0.7);
+  } else if (kind === 'morph') {
+    const moved = [new THREE.Float32BufferAttribute([0.5, -0.5, 0, 0, 0, 0, 0, 0.7, 0, -0.3, 0, 0], 3)];
+    geometry.morphAttributes.position = [new THREE.Float32BufferAttribute(new Float32Array(12), 3), ...moved];
+    geometry.morphTargetsRelative = true;
+    mesh = new THREE.Mesh(geometry);
+    mesh.morphTargetInfluences = [1, 0.8];
+  } else if (kind === 'instances') {
+    mesh = new THREE.InstancedMesh(geometry, undefined, 3);
+    for (let i = 0; i < 3; ++i) {
+      const turn = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), i);
+      const at = new THREE.Vector3(0.5 * i - 0.5, 0.2 * i, -i);
+      mesh.setMatrixAt(i, new THREE.Matrix4().compose(at, turn, new THREE.Vector3(0.1 + 0.1 * i, 0.2, 1)));
+    }
+  }
+  mesh.rotation.z = 0.2;
+  const scene = new THREE.Scene();
+  scene.add(mesh);
+  const seen = (material) => {
+    mesh.material = material;
+    return colours(scene, camera(), 32).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+  };
+  const glowing = { emissiveFactor: [1, 1, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] }, doubleSided: true };
+  return [seen(lacquered.materialFrom(lacquer, glowing, mesh)), seen(new THREE.MeshBasicMaterial({ side: THREE.DoubleSide }))];
+}
+
+test('skins, morph targets and instances move it as they move three.js\'s own materials', async () => {
+  for (const kind of ['plain', 'skin', 'morph', 'instances']) {
+    const [own, theirs] = await inPage(covered, kind);
+    const sum = theirs.reduce((all, x) => all + x, 0);
+    assert.ok(sum > 50 && (kind === 'plain' || sum < 1000), `${kind}: ${sum}`);
+    const off = own.filter((x, i) => x !== theirs[i]).length;
+    assert.ok(off <= 2, `${kind}: ${off} of ${sum} pixels`);
+  }
+});
+
+test('fog, tone mapping and the colour space are the renderer\'s', async () => {
+  const at = await inPage(() => {
+    const mesh = quad();
+    const glowing = { emissiveFactor: [0.5, 0.25, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] } };
+    const scene = new THREE.Scene();
+    scene.add(mesh);
+    const theirs = new THREE.MeshBasicMaterial();
+    theirs.color.setRGB(0.5, 0.25, 1);
+    const own = lacquered.materialFrom(lacquer, glowing, mesh);
+    const eye = new THREE.PerspectiveCamera(30, 1, 0.1, 10);
+    eye.position.z = 3;
+    const shown = (material) => {
+      mesh.material = material;
+      renderer.setSize(8, 8, false);
+      renderer.render(scene, eye);
+      const gl = renderer.getContext();
+      const pixel = new Uint8Array(4);
+      gl.readPixels(4, 4, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      return [...pixel];
+    };
+    const both = () => [shown(own), shown(theirs)];
+    const plain = both();
+    renderer.toneMapping = THREE.NeutralToneMapping;
+    renderer.toneMappingExposure = 1.5;
+    const toned = both();
+    scene.fog = new THREE.Fog(0x336699, 1, 6);
+    const foggy = both();
+    scene.fog = new THREE.FogExp2(0x336699, 0.3);
+    const denser = both();
+    renderer.toneMapping = THREE.NoToneMapping;
+    renderer.toneMappingExposure = 1;
+    return { plain, toned, foggy, denser };
+  });
+  for (const [name, [own, theirs]] of Object.entries(at)) {
+    own.forEach((x, i) => assert.ok(Math.abs(x - theirs[i]) <= 2, `${name}: ${own}, not ${theirs}`));
+  }
+  assert.notDeepEqual(at.plain[0], at.toned[0]);
+  assert.notDeepEqual(at.toned[0], at.foggy[0]);
+});
+
+test('through glass the scene is seen, and no other glass', async () => {
+  const at = await inPage(() => {
+    const scene = new THREE.Scene();
+    const wall = quad();
+    wall.position.z = -2;
+    wall.scale.setScalar(4);
+    wall.material = new THREE.MeshBasicMaterial();
+    wall.material.color.setRGB(0.2, 0.8, 0.4);
+    const glass = quad();
+    const extensions = { KHR_materials_transmission: { transmissionFactor: 1 } };
+    const clear = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 0 }, extensions };
+    glass.material = lacquered.materialFrom(lacquer, clear, glass);
+    const behind = glass.clone();
+    behind.position.z = -1;
+    scene.add(wall, glass, behind);
+    renderer.setSize(64, 64, false);
+    const eye = new THREE.PerspectiveCamera(20, 1, 0.1, 10);
+    eye.position.z = 3;
+    const middle = colours(scene, eye, 9).slice(4 * 40, 4 * 40 + 3);
+    return { middle, visible: [glass.visible, behind.visible] };
+  });
+  // Fresnel takes four hundredths.
+  [0.2, 0.8, 0.4].forEach((x, i) => assert.ok(Math.abs(at.middle[i] - 0.96 * x) < 0.02, `${at.middle}`));
+  assert.deepEqual(at.visible, [true, true]);
+});
+
+/** A file by GLTFLoader with the plugin, drawn: what has become of its materials. */
+async function loaded(url) {
+  const loader = new GLTFLoader();
+  const told = [];
+  loader.register((parser) => new lacquered.LacquerPlugin(parser, lacquer, { onMessage: (message) => told.push(message) }));
+  const { scene: model } = await loader.loadAsync(url);
+  const scene = new THREE.Scene();
+  scene.add(model, lamp(), new THREE.AmbientLight());
+  const box = new THREE.Box3().setFromObject(model, true);
+  const radius = Math.max(box.getSize(new THREE.Vector3()).length() / 2, 1e-6);
+  const eye = new THREE.PerspectiveCamera(39, 1, radius / 4, 10 * radius);
+  eye.position.copy(box.getCenter(new THREE.Vector3())).z += 3 * radius;
+  const drawn = colours(scene, eye, 32);
+  const kinds = [];
+  model.traverse((object) => object.isMesh && kinds.push(object.material.isLacquerMaterial === true));
+  model.traverse((object) => object.material?.dispose?.());
+  const errors = told.filter(({ level }) => level === 'error').map(({ text }) => text);
+  return { kinds, errors, finite: drawn.every(Number.isFinite), lit: drawn.some((x, i) => i % 4 < 3 && x > 0.01) };
+}
+
+test('GLTFLoader with the plugin draws every example', async () => {
+  for (const file of inputs().filter((name) => name.startsWith('examples/'))) {
+    const { kinds, errors, finite } = await inPage(loaded, `${server.url}/${file}`, kLoaders);
+    assert.deepEqual(errors, [], file);
+    assert.ok(kinds.length > 0 && kinds.every(Boolean) && finite, `${file}: ${kinds} ${finite}`);
+  }
+  const { kinds, lit } = await inPage(loaded, `${server.url}/three/triangle.gltf`);
+  assert.ok(kinds.every(Boolean) && lit);
+});
+
+/** All that it names is beside it. */
+function isWhole(file) {
+  if (file.endsWith('.glb')) return true;
+  const { buffers = [], images = [] } = JSON.parse(read(file));
+  const names = [...buffers, ...images].map(({ uri }) => uri).filter((uri) => uri && !uri.startsWith('data:'));
+  return names.every((uri) => existsSync(join(dirname(file), decodeURIComponent(uri))));
+}
+
+test('GLTFLoader with the plugin draws real files', async (t) => {
+  const files = realFiles().filter((file) => statSync(file).size < kLargest && isWhole(file));
+  if (files.length === 0) return t.skip('there is no assets folder');
+  for (const file of files) {
+    const place = `${basename(dirname(file))}/${basename(file)}`;
+    const { kinds, errors, finite, lit } = await inPage(loaded, `${server.url}/assets/${place}`, kLoaders);
+    assert.deepEqual(errors, [], place);
+    assert.ok(kinds.every(Boolean) && finite && (lit || kinds.length === 0), `${place}: ${kinds} ${finite} ${lit}`);
+  }
+});
+
+test('its example draws', async () => {
+  const own = await browser.newPage();
+  try {
+    const { said, unlessItFails } = listen(own, kSlow);
+    await own.goto(`${server.url}/three/index.html`, { timeout: kPatience });
+    await unlessItFails(own.waitForFunction(() => document.title === 'drawn', null, { timeout: kPatience }));
+    assert.deepEqual(said, []);
+    assert.ok((await own.locator('canvas').screenshot()).length > 3000);
+  } finally {
+    await own.close();
+  }
+});
