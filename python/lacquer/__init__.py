@@ -10,6 +10,8 @@ import ctypes
 import json
 import operator
 import os
+import struct
+import zlib
 from ctypes import byref, c_char_p, c_double, c_float, c_size_t, c_uint8
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,6 +68,19 @@ class Error(Exception):
     def __init__(self, messages: List[Message]):
         super().__init__("\n".join(m.text for m in messages if m.level == "error") or "the call failed")
         self.messages = messages
+
+
+def _wrong(code: str, message: str, help: str = "") -> Error:
+    """What this package finds itself."""
+    text = f"error: {message} [{code}]" + (f"\n  help: {help}" if help else "")
+    return Error([Message("error", code, "", "", 0, 0, message, help, text)])
+
+
+def _chosen(names: Mapping[str, int], name: str, what: str) -> int:
+    """The number of a name; raises, and says which there are."""
+    if name not in names:
+        raise _wrong("unknown-name", f"there is no {what} {name!r}", "it is one of " + ", ".join(names))
+    return names[name]
 
 
 def _text(text: str) -> bytes:
@@ -166,12 +181,12 @@ class Shader(_Handle):
 
     def text(self, target: str, stage: str = "fragment") -> str:
         """Empty for a target that was not asked for or that has no text."""
-        return _sized(_lib.lacquer_shader_text, self._at, _text(target), _STAGES[stage])
+        return _sized(_lib.lacquer_shader_text, self._at, _text(target), _chosen(_STAGES, stage, "stage"))
 
     def spirv(self, stage: str = "fragment") -> NDArray[np.uint32]:
         """Words in the machine's byte order; empty when "spirv" was not asked for."""
         count = c_size_t()
-        at = _lib.lacquer_shader_spirv(self._at, _STAGES[stage], byref(count))
+        at = _lib.lacquer_shader_spirv(self._at, _chosen(_STAGES, stage, "stage"), byref(count))
         return np.frombuffer(ctypes.string_at(at, 4 * count.value) if at else b"", dtype=np.uint32)
 
     @property
@@ -291,6 +306,18 @@ def _drawn(pixels: int, call: Callable[[Any, int], Any]) -> NDArray[np.uint8]:
     picture = np.zeros((pixels, pixels, 3), dtype=np.uint8)
     call(picture.ctypes.data_as(ctypes.POINTER(c_uint8)), picture.size)
     return picture
+
+
+def _png(pixels: NDArray[np.uint8]) -> bytes:
+    """A file of rows of sRGB pixels (ISO/IEC 15948)."""
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    height, width, _ = pixels.shape
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, 3 * width)], axis=1)
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(rows.tobytes()))
+            + chunk(b"IEND", b""))
 
 
 class Graph(_Handle):
@@ -433,10 +460,10 @@ class Graph(_Handle):
         if _are_arrays(points):
             rgba, discarded = _colors_of(points, lambda rows, count, size, to: _calling(
                 options, messages, lambda said, how: _lib.lacquer_graph_colors_of(
-                    self._at, rows, count, size, _ENGINES[engine], to, how, said)))
+                    self._at, rows, count, size, _chosen(_ENGINES, engine, "engine"), to, how, said)))
             return Evaluation(self.to_json()["name"], engine, None, rgba, discarded)
         return _evaluated(points, lambda text: _taken(_calling(
-            options, messages, lambda said, how: _lib.lacquer_graph_evaluate(self._at, text, len(text), _ENGINES[engine],
+            options, messages, lambda said, how: _lib.lacquer_graph_evaluate(self._at, text, len(text), _chosen(_ENGINES, engine, "engine"),
                                                                              how, said))))
 
     def preview(self, pixels: int = 256, options: Optional[Options] = None,
@@ -444,6 +471,10 @@ class Graph(_Handle):
         """As Scene.preview(), of the graph as it is now."""
         return _drawn(pixels, lambda at, size: _calling(
             options, messages, lambda said, how: _lib.lacquer_graph_preview(self._at, pixels, at, size, how, said)))
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows of it: a ball."""
+        return _png(self.preview(192))
 
     def _edit(self, messages: Optional[List[Message]], function: Callable[..., int], *texts: str) -> None:
         words = [_text(text) for text in texts]
@@ -512,7 +543,8 @@ class Scene(_Handle):
     def _bits(self, material: int, attributes: Optional[Sequence[str]]) -> int:
         if attributes is None:
             attributes = next(iter(self.uses(material)), _UNUSED)
-        return sum(1 << ATTRIBUTES.index(name) for name in attributes)
+        bits = {name: 1 << i for i, name in enumerate(ATTRIBUTES)}
+        return sum(_chosen(bits, name, "attribute") for name in set(attributes))
 
     def to_materialx(self, materials: Sequence[str] = (), surface: str = "",
                      edited: Optional[Mapping[int, "Graph"]] = None, options: Optional[Options] = None,
@@ -539,11 +571,11 @@ class Scene(_Handle):
         if _are_arrays(points):
             rgba, discarded = _colors_of(points, lambda rows, count, size, to: _calling(
                 options, messages, lambda said, how: _lib.lacquer_scene_colors_of(
-                    self._at, _index(material), rows, count, size, _ENGINES[engine], to, how, said)))
+                    self._at, _index(material), rows, count, size, _chosen(_ENGINES, engine, "engine"), to, how, said)))
             return Evaluation(self.materials[material], engine, (options or {}).get("profile"), rgba, discarded)
         return _evaluated(points, lambda text: _taken(_calling(
             options, messages, lambda said, how: _lib.lacquer_scene_evaluate(
-                self._at, _index(material), text, len(text), _ENGINES[engine], how, said))))
+                self._at, _index(material), text, len(text), _chosen(_ENGINES, engine, "engine"), how, said))))
 
     def preview(self, material: int = 0, pixels: int = 256, options: Optional[Options] = None,
                 messages: Optional[List[Message]] = None) -> NDArray[np.uint8]:
@@ -551,6 +583,11 @@ class Scene(_Handle):
         return _drawn(pixels, lambda at, size: _calling(
             options, messages, lambda said, how: _lib.lacquer_scene_preview(self._at, _index(material), pixels, at, size,
                                                                             how, said)))
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """What a notebook shows of it: a ball for each material, the first six in a row; nothing where there is none."""
+        balls = [self.preview(material, 128) for material in range(min(len(self.materials), 6))]
+        return _png(np.concatenate(balls, axis=1)) if balls else None
 
 
 def version() -> str:

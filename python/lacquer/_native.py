@@ -124,10 +124,14 @@ _FUNCTIONS = {
 
 
 def _candidates() -> List[str]:
-    """LACQUER_LIBRARY, the library of a build of this tree, that of the installation around, what the system has."""
+    """LACQUER_LIBRARY, the library of a wheel that has one, of a build of this tree, that of the installation around, what the
+    system has."""
     named = os.environ.get("LACQUER_LIBRARY")
     if named:
         return [named]
+    within = Path(__file__).resolve().parent / "lib" / "liblacquer.so"
+    if within.exists():
+        return [str(within)]
     built = Path(__file__).resolve().parents[2] / "build" / "release" / "liblacquer.so"
     found = [str(built)] if built.exists() else []
     # An installation has the package in share/lacquer/python.

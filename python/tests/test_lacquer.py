@@ -504,3 +504,40 @@ def test_example_runs(tmp_path):
     assert done.returncode == 0, done.stderr
     assert picture.read_bytes().startswith(b"P6")
     assert "forward-coat-" in done.stdout
+
+
+def test_wrong_words_say_which_are_right(coat):
+    shader = coat.graph(0).generate({"targets": ["essl"], "validate": False})
+    for call, right in (
+        (lambda: shader.text("essl", "middle"), "vertex, fragment"),
+        (lambda: shader.spirv("middle"), "vertex, fragment"),
+        (lambda: coat.evaluate(0, [], engine="quad"), "double, float"),
+        (lambda: coat.graph(0).evaluate({"n": np.zeros((1, 3))}, engine="quad"), "double, float"),
+        (lambda: coat.graph(0, attributes=["NORMALS"]), "NORMAL, TANGENT"),
+    ):
+        with pytest.raises(lacquer.Error, match=right) as raised:
+            call()
+        assert raised.value.messages[0].code == "unknown-name"
+
+
+def test_notebooks_show_balls(coat):
+    import struct
+    import zlib
+
+    def pixels(png):
+        assert png[:8] == b"\x89PNG\r\n\x1a\n"
+        width, height = struct.unpack(">II", png[16:24])
+        at, data = 8, b""
+        while at < len(png):
+            size, kind = struct.unpack(">I4s", png[at:at + 8])
+            assert struct.unpack(">I", png[at + 8 + size:at + 12 + size])[0] == zlib.crc32(png[at + 4:at + 8 + size])
+            data += png[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+            at += 12 + size
+        rows = np.frombuffer(zlib.decompress(data), np.uint8).reshape(height, 1 + 3 * width)
+        assert not rows[:, 0].any()
+        return rows[:, 1:].reshape(height, width, 3)
+
+    assert np.array_equal(pixels(coat.graph(0)._repr_png_()), coat.graph(0).preview(192))
+    shown = pixels(coat._repr_png_())
+    assert shown.shape == (128, 128 * min(len(coat.materials), 6), 3)
+    assert np.array_equal(shown[:, 128:256], coat.preview(1, 128))
