@@ -98,8 +98,45 @@ export interface PunctualLight {
   outerConeAngle?: number;
 }
 
-/** An element of the lights, for Shader.block(): as the light kinds of templates/mesh.node say. */
-export function lightValues(light: PunctualLight): Record<string, number | number[]> {
+/** A light of EXT_lights_area, in world space: of the template forward_area. */
+export interface AreaLight {
+  type: 'rect' | 'disk';
+  position?: [number, number, number];
+  /** Unit: its node's x and y axes. It shines to the node's -z. */
+  right?: [number, number, number];
+  up?: [number, number, number];
+  color?: [number, number, number];
+  /** Nits. */
+  intensity?: number;
+  /** Metres: a rectangle's height, a disc's diameter. */
+  size?: number;
+  /** Of a rectangle: width over height. */
+  aspect?: number;
+}
+
+/** As the kinds rect and disk of templates/forward_area.node say. */
+function areaValues(light: AreaLight): Record<string, number | number[]> {
+  const { type, position = [0, 0, 0], right = [1, 0, 0], up = [0, 1, 0], color = [1, 1, 1] } = light;
+  const { intensity = 1, size = 1, aspect = 1 } = light;
+  const [x, y, z] = [0, 1, 2].map((i) => right[(i + 2) % 3] * up[(i + 1) % 3] - right[(i + 1) % 3] * up[(i + 2) % 3]);
+  return {
+    position,
+    positional: 1,
+    radiance: [0, 0, 0],
+    inverse_range_4: 0,
+    direction: [x, y, z],
+    spot_scale: 0,
+    spot_offset: 1,
+    area_x: right.map((r) => r * 0.5 * size * (type === 'rect' ? aspect : 1)),
+    area_y: up.map((u) => u * 0.5 * size),
+    area_radiance: color.map((c) => c * intensity),
+    disk: type === 'disk' ? 1 : 0,
+  };
+}
+
+/** An element of the lights, for Shader.block(): as the light kinds of templates/mesh.node and forward_area.node say. */
+export function lightValues(light: PunctualLight | AreaLight): Record<string, number | number[]> {
+  if (light.type === 'rect' || light.type === 'disk') return areaValues(light);
   const { type, position = [0, 0, 0], direction = [0, 0, -1], color = [1, 1, 1], intensity = 1, range = 0 } = light;
   const { innerConeAngle = 0, outerConeAngle = Math.PI / 4 } = light;
   const positional = type !== 'directional';

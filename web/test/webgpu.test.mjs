@@ -73,6 +73,10 @@ test('matrices, lights and constants', () => {
   assert.ok(Math.abs(spot.spot_scale - 2) < 1e-12 && Math.abs(spot.spot_offset + 1) < 1e-12);
   assert.equal(spot.inverse_range_4, 1 / 16);
   assert.deepEqual(spot.radiance, [2, 2, 2]);
+  const lamp = webgpu.lightValues({ type: 'rect', size: 2, aspect: 3, intensity: 4, color: [1, 0.5, 0] });
+  assert.deepEqual(lamp.direction.map((x) => x + 0), [0, 0, -1]);
+  assert.deepEqual([lamp.area_x, lamp.area_y, lamp.area_radiance, lamp.disk], [[3, 0, 0], [0, 1, 0], [4, 2, 0], 0]);
+  assert.deepEqual(webgpu.lightValues({ type: 'disk', size: 2, aspect: 3 }).area_x, [1, 0, 0]);
   const sun = webgpu.lightValues({ type: 'directional', direction: [0, -1, 0] });
   assert.deepEqual(sun.position.map((x) => x + 0), [0, 1, 0]);
   assert.equal(sun.positional, 0);
