@@ -656,10 +656,11 @@ def bake(output: Union[str, Path], file: Union[str, Path], materials: Sequence[s
         to, source, names, len(names), how_text, of, said))))
 
 
-def _texels(size: int) -> int:
-    texels = _index(size)
-    if texels > 0xFFFFFFFF:
-        raise ValueError(f"{size} is no size of an image")
+def _texels(size: int, most: int = 0xFFFFFFFF) -> int:
+    texels = operator.index(size)
+    # What a uint32_t holds the library checks itself.
+    if not 0 <= texels <= 0xFFFFFFFF:
+        raise ValueError(f"{size} is no size: it must be from 0 to {most}")
     return texels
 
 
@@ -709,6 +710,6 @@ def light_profiles(files: Sequence[Union[str, Path]], output: Union[str, Path] =
                    options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> Dict[str, Any]:
     """The tables of IES files, and of EXT_lights_ies in glTF files, as the layers of `output`, a .ktx2, .dds or .png file; none
     is written without. What was found, as `lacquer profile --json`; sides of 0 are those of `lacquer profile`."""
-    to, sources, sides = _path(output), (c_char_p * len(files))(*map(_path, files)), (_texels(width), _texels(height))
+    to, sources, sides = _path(output), (c_char_p * len(files))(*map(_path, files)), (_texels(width, 2048), _texels(height, 2048))
     return json.loads(_taken(_calling(options, messages, lambda said, of: _lib.lacquer_light_profiles(
         to, sources, len(sources), *sides, of, said))))

@@ -413,6 +413,11 @@ def test_light_profiles(tmp_path):
     assert "output" not in lacquer.light_profiles([lamp, lamp])
     with pytest.raises(lacquer.Error):
         lacquer.light_profiles([tmp_path / "none.ies"])
+    for sides in ({"width": -1}, {"height": -1}, {"width": 2**32}):
+        with pytest.raises(ValueError, match="from 0 to 2048"):
+            lacquer.light_profiles([lamp], **sides)
+    with pytest.raises(lacquer.Error, match="from 2 to 2048 texels"):
+        lacquer.light_profiles([lamp], width=1)
 
 
 def test_materials_of_other_tools(tmp_path):
