@@ -6,6 +6,7 @@
 #include <charconv>
 #include <vector>
 
+#include "support/letters.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -28,9 +29,7 @@ bool parseSize(std::string_view text, uint64_t& size) {
   uint64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{}) return false;
-  std::string unit(end, text.data() + text.size());
-  std::transform(unit.begin(), unit.end(), unit.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; });
+  std::string unit = lowered({end, text.data() + text.size()});
   unit.erase(0, unit.find_first_not_of(' '));
   size_t shift = 0;
   if (const size_t place = unit.empty() ? std::string_view::npos : kUnits.find(unit[0]);

@@ -1,6 +1,5 @@
 #include "cli/trial.h"
 
-#include <cctype>
 #include <cmath>
 #include <locale>
 #include <map>

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "support/letters.h"
 #include "support/text.h"
 
 namespace lacquer::photometry {
@@ -24,12 +24,6 @@ constexpr double kMostNumber = 1e15;
 /// From an angle to the next, in degrees: what is left of it where angles are moved.
 constexpr double kLeastStep = 1e-6;
 constexpr const char kAllThere[] = "each number of the standard is there, in its order";
-
-std::string upper(std::string_view text) {
-  std::string made(text);
-  for (char& c : made) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return made;
-}
 
 bool isAbout(double a, double b) { return std::abs(a - b) < 1e-6; }
 
@@ -127,7 +121,7 @@ void Lm63Reader::version() {
                                                                 {2019, "LM-63-2019"}};
   const size_t begin = at_;
   const std::optional<Line> line = takeLine();
-  const std::string first = line ? upper(line->text) : std::string();
+  const std::string first = line ? uppered(line->text) : std::string();
   if (!first.starts_with("IES")) {
     at_ = begin;
   } else {
@@ -147,9 +141,9 @@ void Lm63Reader::version() {
 /// Passes over keywords and labels to the line of the tilt, and over what that says.
 Result<void> Lm63Reader::tilt() {
   for (std::optional<Line> line = takeLine(); line; line = takeLine()) {
-    if (!upper(line->text.substr(0, kTilt.size())).starts_with(kTilt)) continue;
+    if (!uppered(line->text.substr(0, kTilt.size())).starts_with(kTilt)) continue;
     const std::string_view file = trimmed(line->text.substr(kTilt.size()));
-    const std::string which = upper(file);
+    const std::string which = uppered(file);
     if (which == "NONE") return {};
     if (which == "INCLUDE") {
       warn("profile-tilt", line->begin, "the factors of the lamp's tilt are not applied",

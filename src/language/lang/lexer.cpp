@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "support/letters.h"
 #include "support/text.h"
 
 namespace lacquer::lang {
@@ -131,7 +131,7 @@ private:
   /// `0x` and digits: the bits of an integer.
   void hexadecimal() {
     uint32_t length = 2;
-    while (std::isxdigit(static_cast<unsigned char>(look(length))) != 0) ++length;
+    while (isHexDigit(look(length))) ++length;
     const std::string_view digits = text_.substr(at_ + 2, length - 2);
     const bool without_sign = look(length) == 'u';
     const uint32_t end = length + (without_sign ? 1 : 0);

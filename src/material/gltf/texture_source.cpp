@@ -14,6 +14,7 @@
 #include "gltf/reading.h"
 #include "support/contain.h"
 #include "support/file.h"
+#include "support/letters.h"
 #include "support/text.h"
 
 namespace lacquer::gltf {
@@ -60,8 +61,7 @@ std::optional<std::string> fromBase64(std::string_view text) {
 
 bool isData(std::string_view uri) {
   constexpr std::string_view kScheme = "data:";
-  return uri.size() > kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
-                                                   [](char a, char b) { return (b | 0x20) == a || a == b; });
+  return uri.size() > kScheme.size() && sameLetters(uri.substr(0, kScheme.size()), kScheme);
 }
 
 }  // namespace

@@ -96,9 +96,7 @@ bool isAttributeType(ir::Type type) {
 
 bool sameAttribute(std::string_view a, std::string_view b) {
   for (std::string_view* name : {&a, &b}) name->remove_prefix(name->starts_with('_') ? 1 : 0);
-  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return small(x) == small(y); });
+  return sameLetters(a, b);
 }
 
 Texture bare(const Texture& texture) {
