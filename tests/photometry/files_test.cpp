@@ -170,10 +170,11 @@ TEST_F(ProfileFiles, OfGltfLieBelowItsFolder) {
     EXPECT_EQ(wrongWith({}, {path("missing.gltf")}), "profile-missing ") << uri;
   }
   putGltf("neither.gltf", json::array({json::object()}));
-  EXPECT_EQ(wrongWith({}, {path("neither.gltf")}), "profile-missing ");
+  EXPECT_EQ(wrongWith({}, {path("neither.gltf")}), "missing-property ");
   putGltf("null.gltf", json::array({nullptr}));
-  EXPECT_EQ(wrongWith({}, {path("null.gltf")}), "profile-missing ");
-  putGltf("view.gltf", {{{"bufferView", 1}, {"mimeType", "application/x-ies-lm-63"}}});
+  EXPECT_EQ(wrongWith({}, {path("null.gltf")}), "wrong-type ");
+  putGltf("view.gltf", {{{"bufferView", 0}, {"mimeType", "application/x-ies-lm-63"}}},
+          {{"bufferViews", {{{"buffer", 1}, {"byteLength", 9}}}}});
   EXPECT_EQ(wrongWith({}, {path("view.gltf")}), "profile-missing ");
   putGltf("wrong.gltf", {{{"uri", "lamps/wrong.ies"}}});
   put("lamps/wrong.ies", "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 two");
@@ -185,6 +186,64 @@ TEST_F(ProfileFiles, OfGltfLieBelowItsFolder) {
   putGltf("lamp.gltf", {{{"uri", "lamps/halves.png"}}});
   put("lamps/halves.png", kHalves);
   EXPECT_EQ(wrongWith({path("lamps/halves.png")}, {path("lamp.gltf")}), "output-clash ");
+}
+
+/// What is wrong with the extension is said as by those who read the file as a scene.
+TEST_F(ProfileFiles, OfGltfAreCheckedAsInScenes) {
+  const json nodes = {{{"extensions", {{"EXT_lights_ies", {{"light", 0}, {"multiplier", -1}}}}}},
+                      {{"extensions", {{"EXT_lights_ies", {{"light", 0}, {"color", {0, 2, 1}}}}}}},
+                      {{"extensions", {{"EXT_lights_ies", {{"light", 1}}}}}},
+                      {{"extensions", {{"EXT_lights_ies", 3}}}}};
+  const std::pair<json, std::string> kWrong[] = {
+      {{{"uri", "round.ies"}, {"bufferView", 0}, {"mimeType", "application/x-ies-lm-63"}},
+       "excluded-property "},
+      {{{"uri", "round.ies"}, {"mimeType", "image/png"}}, "unknown-value "},
+      {{{"bufferView", 0}}, "missing-property "},
+      {{{"bufferView", 1}, {"mimeType", "application/x-ies-lm-63"}}, "index-out-of-range "},
+      {{{"uri", 3}}, "wrong-type "}};
+  const json more = {{"buffers", {{{"uri", "round.ies"}, {"byteLength", sizeof kRound - 1}}}},
+                     {"bufferViews", {{{"buffer", 0}, {"byteLength", sizeof kRound - 1}}}}};
+  const auto inScene = [&] {
+    messages_.clear();
+    Scene::load(path("lamps.gltf"), {}, messages_);
+    std::string texts;
+    for (const Message& message : messages_) texts += message.text + '\n';
+    return texts;
+  };
+  const auto inProfiles = [&] {
+    EXPECT_FALSE(make({}, {path("lamps.gltf")}));
+    std::string texts;
+    for (const Message& message : messages_) texts += message.text + '\n';
+    return texts;
+  };
+  for (const auto& [light, code] : kWrong) {
+    putGltf("lamps.gltf", json::array({light}), more);
+    EXPECT_EQ(wrongWith({}, {path("lamps.gltf")}), code);
+    EXPECT_EQ(inProfiles(), inScene()) << light;
+  }
+  putGltf("lamps.gltf", {{{"uri", "round.ies"}}}, {{"nodes", nodes}});
+  EXPECT_EQ(wrongWith({}, {path("lamps.gltf")}), "out-of-range out-of-range index-out-of-range wrong-type ");
+  EXPECT_EQ(inProfiles(), inScene());
+  putGltf("lamps.gltf", json::array());
+  EXPECT_EQ(wrongWith({}, {path("lamps.gltf")}), "wrong-length ");
+}
+
+/// A file is not of those who read it: what is quoted of it is short, whatever it holds.
+TEST_F(ProfileFiles, MessagesAreShort) {
+  const std::string long_text(1 << 20, 'x');
+  const std::string head = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n1 1 10\n";
+  const std::string kTexts[] = {"IES" + long_text,
+                                long_text,
+                                "TILT=" + long_text,
+                                "TILT=NONE\n" + long_text,
+                                head + "0 90 180 0 1 2 " + long_text,
+                                head + "0 90 " + std::string(1 << 20, '9')};
+  for (const std::string& text : kTexts) {
+    messages_.clear();
+    EXPECT_FALSE(lightProfile(text, "memory", {}, messages_));
+    ASSERT_FALSE(messages_.empty());
+    for (const Message& message : messages_) EXPECT_LT(message.text.size(), 1000U) << text.substr(0, 20);
+  }
 }
 
 TEST_F(ProfileFiles, WrongArgumentsAreSaid) {

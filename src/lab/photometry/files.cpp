@@ -1,17 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "gltf/lights_ies.h"
 #include "gltf/texture_source.h"
 #include "lacquer/tools.h"
 #include "photometry/distribution.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "support/file.h"
+#include "support/letters.h"
 #include "support/outputs.h"
 #include "support/text.h"
 #include "texture/table.h"
@@ -43,8 +44,7 @@ std::string_view nameOf(photometry::Symmetry symmetry) {
 }
 
 bool isGltf(std::string_view path) {
-  std::string lower;
-  for (const char c : path) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = lowered(path);
   return lower.ends_with(".gltf") || lower.ends_with(".glb");
 }
 
@@ -148,11 +148,13 @@ private:
     if (!opened) return tl::make_unexpected(opened.error());
     const json::Json* extensions = json::member(opened->root(), "extensions");
     const json::Json* ies = extensions == nullptr ? nullptr : json::member(*extensions, kIes);
-    const json::Json* lights = ies == nullptr ? nullptr : json::member(*ies, "lights");
-    if (lights == nullptr || !lights->is_array() || lights->size() == 0) {
+    if (ies == nullptr) {
       return fail("no-profile", {file, 0, 0, {}}, fmt::format("the file has no lights of {}", kIes),
                   "they stand in the extensions of the file's root");
     }
+    if (Diagnostics wrong = gltf::checkIes(opened->root(), file); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    const json::Json* lights = json::member(*ies, "lights");
     for (size_t i = 0; i < lights->size(); ++i) {
       Place place{file, 0, 0, fmt::format("/extensions/{}/lights/{}", kIes, i)};
       const size_t files_read = opened->filesRead().size();

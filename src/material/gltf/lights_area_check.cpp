@@ -3,27 +3,26 @@
 // there.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string_view>
 
 #include "gltf/reading.h"
 #include "json/path.h"
 #include "json/report.h"
-#include "support/text.h"
 
 namespace lacquer::gltf {
 
 namespace {
 
-/// A number that the light may have, above 0, or from 0 on where that is allowed.
+/// A number that the light may have, above 0, or from 0 on where that is allowed, and a float.
 void checkPositive(Report& report, const Json& owner, const Path& path, std::string_view name, bool or_zero) {
   const Json* value = member(owner, name);
   if (value == nullptr) return;
   const Path here(path, name);
-  const std::string_view right = or_zero ? "a number that is not below 0" : "a number above 0";
+  const std::string_view right =
+      or_zero ? "a number from 0 to about 3.4e38" : "a number above 0, to about 3.4e38";
   if (!value->is_number()) return report.wrongType(here, name, *value, right);
   const double number = value->get<double>();
-  if (number > 0 || (or_zero && number == 0)) return;
+  if ((number > 0 || (or_zero && number == 0)) && number <= kMostFloat) return;
   report.error("out-of-range", here, fmt::format("{} is {}", name, number),
                fmt::format("it must be {}", right));
 }
@@ -49,8 +48,6 @@ void checkColor(Report& report, const Json& light, const Path& path) {
 
 Json readAreaLight(Report& report, const Json& light, const Path& path) {
   static constexpr std::string_view kAreaTypes[] = {"rect", "disk"};
-  const Json unusable = {{"type", "unknown"}};
-  if (isStandIn(light)) return unusable;
   checkColor(report, light, path);
   checkPositive(report, light, path, "intensity", true);
   checkPositive(report, light, path, "size", false);
@@ -60,23 +57,7 @@ Json readAreaLight(Report& report, const Json& light, const Path& path) {
     else
       report.wrongType(Path(path, "rect"), "rect", *rect, "an object");
   }
-  const Json* type = member(light, "type");
-  if (type == nullptr) {
-    report.error("missing-property", path, "the light has no \"type\"", "a light must have one");
-    return unusable;
-  }
-  const Path here(path, "type");
-  if (!type->is_string()) {
-    report.wrongType(here, "type", *type, "a string");
-    return unusable;
-  }
-  const auto& name = type->text();
-  if (std::find(std::begin(kAreaTypes), std::end(kAreaTypes), name) == std::end(kAreaTypes)) {
-    report.error("unknown-value", here, fmt::format("the light's type is {}", quote(name)),
-                 fmt::format("it must be {}", listOf(kAreaTypes, "or")));
-    return unusable;
-  }
-  return {{"type", name}};
+  return readLightType(report, light, path, kAreaTypes);
 }
 
 }  // namespace lacquer::gltf

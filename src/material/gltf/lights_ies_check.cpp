@@ -2,6 +2,7 @@
 // by `lacquer profile`.
 #include <fmt/format.h>
 
+#include "gltf/lights_ies.h"
 #include "gltf/reading.h"
 #include "support/text.h"
 
@@ -72,7 +73,6 @@ void checkIesLights(Reading& reading, const Json& extension, const Path& path) {
 }
 
 int iesLightOf(Reading& reading, const Json& extension, const Path& path) {
-  constexpr double kMostFloat = 3.4028234663852886e38;
   Report& report = reading.report;
   int index = -1;
   const Json* root = extensionOf(reading.root, kIesLights);
@@ -100,6 +100,31 @@ int iesLightOf(Reading& reading, const Json& extension, const Path& path) {
     }
   }
   return index;
+}
+
+Diagnostics checkIes(const Json& root, const std::string& file) {
+  Scene scene;
+  scene.path = file;
+  Report report(scene.path, scene.diagnostics);
+  Reading reading{root, scene, report};
+  const Path top;
+  const Path extensions(top, "extensions");
+  if (const Json* extension = extensionOf(root, kIesLights))
+    checkIesLights(reading, *extension, Path(extensions, kIesLights));
+  const Json* nodes = member(root, "nodes");
+  const Path of_nodes(top, "nodes");
+  for (size_t i = 0; nodes != nullptr && nodes->is_array() && i < nodes->size(); ++i) {
+    const Json* light = extensionOf((*nodes)[i], kIesLights);
+    if (light == nullptr) continue;
+    const Path node(of_nodes, i);
+    const Path inside(node, "extensions");
+    const Path here(inside, kIesLights);
+    if (light->is_object())
+      iesLightOf(reading, *light, here);
+    else
+      report.wrongType(here, kIesLights, *light, "an object");
+  }
+  return std::move(scene.diagnostics);
 }
 
 }  // namespace lacquer::gltf

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -73,6 +74,14 @@ Texture readTexture(const Json& root, const Json& texture, const Path& path, Rep
 
 /// Says what is wrong with a sampler, once for all textures that have it.
 void checkSampler(const Json& sampler, const Path& path, Report& report);
+
+/// What a light's type comes to, {"type": "point"}: "unknown" where it has none of `types`, which is
+/// reported.
+Json readLightType(Report& report, const Json& light, const Path& path,
+                   std::span<const std::string_view> types);
+
+/// No greater number is a float.
+inline constexpr double kMostFloat = 3.4028234663852886e38;
 
 inline constexpr std::string_view kIesLights = "EXT_lights_ies";
 

@@ -8,6 +8,7 @@
 #include "gltf/scene.h"
 #include "json/path.h"
 #include "json/report.h"
+#include "support/letters.h"
 #include "support/text.h"
 
 namespace lacquer::gltf {
@@ -19,10 +20,7 @@ constexpr std::string_view kInstances = "EXT_mesh_gpu_instancing";
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 constexpr std::string_view kData = "data:";
 
-bool isDataUri(std::string_view uri) {
-  return uri.size() >= kData.size() && std::equal(kData.begin(), kData.end(), uri.begin(),
-                                                  [](char a, char b) { return a == (b | 0x20) || a == b; });
-}
+bool isDataUri(std::string_view uri) { return sameLetters(uri.substr(0, kData.size()), kData); }
 
 class SceneChecker {
 public:
@@ -130,25 +128,8 @@ void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
 
 Json SceneChecker::light(const Json& light, const Path& path) {
   static constexpr std::string_view kTypes[] = {"directional", "point", "spot"};
-  Json unusable = {{"type", "unknown"}};
-  const Json* type = member(light, "type");
-  if (type == nullptr) {
-    if (!isStandIn(light))
-      report_.error("missing-property", path, "the light has no \"type\"", "a light must have one");
-    return unusable;
-  }
-  const Path here(path, "type");
-  if (!type->is_string()) {
-    report_.wrongType(here, "type", *type, "a string");
-    return unusable;
-  }
-  const auto& name = type->text();
-  if (std::find(std::begin(kTypes), std::end(kTypes), name) == std::end(kTypes)) {
-    report_.error("unknown-value", here, fmt::format("the light's type is {}", quote(name)),
-                  fmt::format("it must be {}", listOf(kTypes, "or")));
-    return unusable;
-  }
-  if (name != "spot") return {{"type", name}};
+  Json made = readLightType(report_, light, path, kTypes);
+  if (made["type"].text() != "spot") return made;
   const Json* spot = member(light, "spot");
   if (spot == nullptr) {
     report_.error("missing-property", path, "the spot light has no \"spot\"",
@@ -156,7 +137,8 @@ Json SceneChecker::light(const Json& light, const Path& path) {
   } else if (!spot->is_object()) {
     report_.wrongType(Path(path, "spot"), "spot", *spot, "an object");
   }
-  return {{"type", name}, {"spot", Json::object()}};
+  made["spot"] = Json::object();
+  return made;
 }
 
 void SceneChecker::image(const Json& image, const Path& path) {
@@ -233,6 +215,29 @@ void SceneChecker::ofInstances(const Json& extension, const Path& path) {
 }
 
 }  // namespace
+
+Json readLightType(Report& report, const Json& light, const Path& path,
+                   std::span<const std::string_view> types) {
+  Json unusable = {{"type", "unknown"}};
+  const Json* type = member(light, "type");
+  if (type == nullptr) {
+    if (!isStandIn(light))
+      report.error("missing-property", path, "the light has no \"type\"", "a light must have one");
+    return unusable;
+  }
+  const Path here(path, "type");
+  if (!type->is_string()) {
+    report.wrongType(here, "type", *type, "a string");
+    return unusable;
+  }
+  const auto& name = type->text();
+  if (std::find(types.begin(), types.end(), name) == types.end()) {
+    report.error("unknown-value", here, fmt::format("the light's type is {}", quote(name)),
+                 fmt::format("it must be {}", listOf(types, "or")));
+    return unusable;
+  }
+  return {{"type", name}};
+}
 
 Json checkScene(const Json& root, Scene& scene) { return SceneChecker(root, scene).check(); }
 
