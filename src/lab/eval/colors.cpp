@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 
 #include "eval/evaluate.h"
 #include "eval/gpu.h"
@@ -22,9 +24,21 @@ namespace lacquer {
 
 namespace {
 
+/// "frame.light_count": the field that says how many lights there are. Nothing where no field does: their
+/// numbers are fixed, or stand in lists.
+std::optional<std::string> lightCountOf(const ir::Module& module) {
+  const bool counted =
+      !module.light_groups.empty() && module.light_groups[0].count == ir::LightGroup::kCounted;
+  if (!counted) return std::nullopt;
+  const ir::Block& block = module.blocks[module.light_count.block];
+  return block.instance + "." + block.fields[module.light_count.field].name;
+}
+
 /// The values that the points' file gives to fields of the template's blocks.
 Result<void> bindUniforms(const ir::Module& module, const EvalPoints& points, const std::string& file,
                           eval::Bindings& bindings) {
+  const std::optional<std::string> count = lightCountOf(module);
+  bool dark = false;
   for (const auto& [name, values] : points.uniforms) {
     const ir::BlockField* field = nullptr;
     for (const ir::Block& block : module.blocks) {
@@ -53,9 +67,18 @@ Result<void> bindUniforms(const ir::Module& module, const EvalPoints& points, co
       return wrong("out-of-range", fmt::format("'{}' is {}", name, x),
                    fmt::format("it must be in [{}, {}]", field->range.lo, field->range.hi));
     }
+    // The devices' loops end there: the evaluators' end with the lights.
+    if (count == name) {
+      if (values[0] != 0 && values[0] != 1) {
+        return wrong("out-of-range", fmt::format("'{}' is {}", name, values[0]),
+                     "an evaluation has one light: it must be 0 or 1");
+      }
+      dark = values[0] == 0;
+    }
     eval::Columns& columns = bindings.lights.at(0).contains(name) ? bindings.lights[0] : bindings.columns;
     columns[name] = eval::Column::constant(values);
   }
+  if (dark) bindings.lights.clear();
   return {};
 }
 
@@ -67,26 +90,57 @@ bool hasPointLight(const ir::Module& module) {
                      [](const ir::LightKind& kind) { return kind.name == kPointLight; });
 }
 
-/// A template with other lights sees nothing of the points' own: its light is what "uniforms" says.
-void noteLights(const ir::Module& module, const EvalPoints& points, const std::string& file,
-                Messages& messages) {
-  if (!module.sums_lights || hasPointLight(module)) return;
+/// Whether the uniforms say something of the light. Its fields are theirs then, so that it may be of any
+/// kind, or not there.
+bool describesLight(const ir::Module& module, const EvalPoints& points) {
+  if (const auto count = lightCountOf(module); count && points.uniforms.contains(*count)) return true;
+  return std::any_of(module.blocks.begin(), module.blocks.end(), [&](const ir::Block& block) {
+    const auto given = points.uniforms.lower_bound(block.instance + ".");
+    return block.role == ir::BlockRole::Lights && given != points.uniforms.end() &&
+           given->first.starts_with(block.instance + ".");
+  });
+}
+
+/// What is known of the one light, by the options and by the points: the same for every engine.
+passes::LightFacts factsOfLight(const ir::Module& module, const EvalPoints& points, const Options& options) {
+  const bool fixed = options.lights.mode == Lights::Mode::Fixed;
+  Strings kinds;
+  for (const auto& [kind, count] : options.lights.counts) {
+    if (count > 0) kinds.push_back(kind);
+  }
+  if (fixed && kinds.empty()) return {false, {}};
+  if (describesLight(module, points) || !hasPointLight(module)) {
+    if (fixed && kinds.size() == 1) return {false, {{kinds[0], 1}}};
+    return {};
+  }
+  if (fixed && std::find(kinds.begin(), kinds.end(), kPointLight) == kinds.end()) return {false, {}};
+  return {false, {{std::string(kPointLight), 1}}};
+}
+
+/// Where the template or the options' counts have other lights alone, nothing is seen of the points' own: the
+/// light is what "uniforms" says.
+void noteLights(const ir::Module& module, const EvalPoints& points, const Options& options,
+                const std::string& file, Messages& messages) {
+  if (!module.sums_lights || describesLight(module, points)) return;
+  const auto& [mode, counts] = options.lights;
+  const bool uncounted = mode == Lights::Mode::Fixed && !counts.empty() && !counts.contains(kPointLight);
+  if (hasPointLight(module) && !uncounted) return;
   for (const ir::Block& block : module.blocks) {
     if (block.role != ir::BlockRole::Lights) continue;
-    const auto given = points.uniforms.lower_bound(block.instance + ".");
-    if (given != points.uniforms.end() && given->first.starts_with(block.instance + ".")) return;
+    const std::string why =
+        hasPointLight(module)
+            ? fmt::format("the lights counted have no '{}'", kPointLight)
+            : fmt::format("the template '{}' has no kind of light '{}'", module.template_name, kPointLight);
     std::string fields;
     for (const ir::BlockField& field : block.fields)
       fields += fmt::format("{}\"{}.{}\"", fields.empty() ? "" : ", ", block.instance, field.name);
-    report(
-        {{"light-unused",
-          Severity::Warning,
-          {file, 0, 0, {}},
-          fmt::format("the points' 'l' and 'light' go nowhere: the template '{}' has no kind of light '{}'",
-                      module.template_name, kPointLight),
-          fmt::format("say in \"uniforms\" what its light is: {}", fields),
-          {}}},
-        file, messages);
+    report({{"light-unused",
+             Severity::Warning,
+             {file, 0, 0, {}},
+             fmt::format("the points' 'l' and 'light' go nowhere: {}", why),
+             fmt::format("say in \"uniforms\" what its light is: {}", fields),
+             {}}},
+           file, messages);
   }
 }
 
@@ -354,12 +408,13 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
-  noteLights(evaluated.module(), points, points_file, messages);
+  const passes::LightFacts counts{options.lights.mode != Lights::Mode::Fixed, options.lights.counts};
+  if (Diagnostics wrong = passes::checkLights(evaluated.module(), counts); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  noteLights(evaluated.module(), points, options, points_file, messages);
   if (const Result<void> fits = checkAttributes(evaluated.module(), points, points_file); !fits)
     return tl::make_unexpected(fits.error());
-  const passes::LightFacts lights = hasPointLight(evaluated.module())
-                                        ? passes::LightFacts{false, {{std::string(kPointLight), 1}}}
-                                        : passes::LightFacts{};
+  const passes::LightFacts lights = factsOfLight(evaluated.module(), points, options);
   // Placed, a module's uniforms are floats: in double it stays as it is.
   if (engine == Engine::Double)
     evaluated.countLights(lights);
