@@ -1,4 +1,5 @@
 // Generated text with its words coloured, in the sections that its comments begin: one for each term.
+import { zipSync, type Zippable } from 'fflate';
 import { byId, download, h } from './dom';
 import type { Page } from './main';
 
@@ -66,9 +67,33 @@ export function hexOf(words: Uint32Array): string {
 const kEndings: Record<string, string> = { essl: 'glsl', glsl: 'glsl', 'glsl-gl': 'glsl', hlsl: 'hlsl', wgsl: 'wgsl', spirv: 'spv' };
 const kWhole: Record<string, string> = { cpp: 'h', js: 'js' }; // of both stages
 
-/** The buttons that take the text away: to the clipboard, or as the file that `lacquer gen` writes. */
+type Stage = 'vertex' | 'fragment';
+const endingOf = (target: string, stage: Stage): string =>
+  kWhole[target] ?? `${stage === 'fragment' ? 'frag' : 'vert'}.${kEndings[target] ?? 'txt'}`;
+
+/** All targets' texts in the folders of `lacquer gen`, what is bound to them, and the graph; null where the material has an error. */
+function folderOf(page: Page, id: string): Uint8Array<ArrayBuffer> | null {
+  const files: Zippable = {};
+  for (const { value: target } of byId<HTMLSelectElement>('target').options) {
+    for (const stage of ['vertex', 'fragment'] as const) {
+      const bytes = page.bytes(target, stage);
+      if (!bytes) return null;
+      if (bytes.length > 0) files[`${target}/${id}.${endingOf(target, stage)}`] = bytes;
+    }
+  }
+  const utf8 = new TextEncoder();
+  const { interface: about, graph, block } = page.described();
+  files['interface.json'] = utf8.encode(`${JSON.stringify(about, null, 2)}\n`);
+  files['graph.json'] = utf8.encode(graph);
+  if (block.length > 0) files['material.bin'] = block;
+  return zipSync(files, { mtime: kNoTime }) as Uint8Array<ArrayBuffer>;
+}
+/** The first that a ZIP knows: the same material has the same bytes. */
+const kNoTime = new Date(1980, 0, 1);
+
+/** The buttons that take the text away: to the clipboard, as the file that `lacquer gen` writes, or all of them in a folder. */
 export function connectCode(page: Page): void {
-  const chosen = () => ({ target: byId<HTMLSelectElement>('target').value, stage: byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment' });
+  const chosen = () => ({ target: byId<HTMLSelectElement>('target').value, stage: byId<HTMLSelectElement>('stage').value as Stage });
   const told = byId('code-told');
   const say = (text: string) => {
     told.textContent = text;
@@ -77,10 +102,14 @@ export function connectCode(page: Page): void {
   byId('copy-code').addEventListener('click', () => void copy(byId('code').textContent ?? '').then((done) => say(done ? 'copied' : 'the browser lets nothing be copied')));
   byId('download-code').addEventListener('click', () => {
     const { target, stage } = chosen();
-    const ending = kWhole[target] ?? `${stage === 'fragment' ? 'frag' : 'vert'}.${kEndings[target] ?? 'txt'}`;
-    const name = `${byId('id').textContent}.${ending}`;
+    const name = `${byId('id').textContent}.${endingOf(target, stage)}`;
     const bytes = page.bytes(target, stage);
     if (bytes) download(name, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
+  });
+  byId('download-folder').addEventListener('click', () => {
+    const id = byId('id').textContent ?? '';
+    const bytes = folderOf(page, id);
+    if (bytes) download(`${id}.zip`, bytes, 'application/zip');
   });
 }
 

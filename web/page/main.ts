@@ -373,6 +373,15 @@ export class Page {
     }
   }
 
+  /** What an application needs beside the texts: the manifest's entry, the graph, the bytes of the material's block. */
+  described(): { interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
+    return withShader(this.lacquer, this.of!, this.options(), [], (shader, graph) => ({
+      interface: shader.interface,
+      graph: graph.toText(),
+      block: new Uint8Array(shader.packGraph(graph)),
+    }));
+  }
+
   private showText(): void {
     const target = byId<HTMLSelectElement>('target').value;
     const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';

@@ -134,9 +134,11 @@ function areaValues(light: AreaLight): Record<string, number | number[]> {
   };
 }
 
+const hasArea = (light: PunctualLight | AreaLight): light is AreaLight => light.type === 'rect' || light.type === 'disk';
+
 /** An element of the lights, for Shader.block(): as the light kinds of templates/mesh.node and forward_area.node say. */
 export function lightValues(light: PunctualLight | AreaLight): Record<string, number | number[]> {
-  if (light.type === 'rect' || light.type === 'disk') return areaValues(light);
+  if (hasArea(light)) return areaValues(light);
   const { type, position = [0, 0, 0], direction = [0, 0, -1], color = [1, 1, 1], intensity = 1, range = 0 } = light;
   const { innerConeAngle = 0, outerConeAngle = Math.PI / 4 } = light;
   const positional = type !== 'directional';

@@ -1,8 +1,9 @@
 // The generated text, taken away, and the material in the page's address.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { unzipSync } from 'fflate';
 import { lacquer, read } from './native.mjs';
 import { begin, drop, end, folder, open, set } from './page.mjs';
 
@@ -31,6 +32,35 @@ test('the text is copied and saved as `lacquer gen` writes it, under its name', 
     await page.selectOption('#target', 'essl');
     await page.selectOption('#stage', 'fragment');
     assert.equal(await page.textContent('#size'), `${readFileSync(join(out, 'essl', `${id}.frag.glsl`)).length} bytes`);
+  }));
+
+test('all targets are saved as a folder, as `lacquer gen` writes it', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const targets = await page.evaluate(() => [...document.getElementById('target').options].map(({ value }) => value));
+    const out = join(folder, 'folder');
+    lacquer('gen', 'examples/clearcoat.gltf', '-o', out, '-q', '--no-validate', '--target', targets.join());
+    const id = await page.textContent('#id');
+    const saved = async () => {
+      const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download-folder')]);
+      assert.equal(download.suggestedFilename(), `${id}.zip`);
+      return readFileSync(await download.path());
+    };
+    const bytes = await saved();
+    const files = unzipSync(bytes);
+    let compared = 0;
+    for (const target of targets) {
+      for (const name of readdirSync(join(out, target)).filter((name) => name.startsWith(id) && !name.endsWith('.d.ts'))) {
+        assert.ok(Buffer.from(files[`${target}/${name}`]).equals(readFileSync(join(out, target, name))), name);
+        ++compared;
+      }
+    }
+    assert.equal(Object.keys(files).length, compared + 3);
+    const { shaders } = JSON.parse(readFileSync(join(out, 'manifest.json')));
+    const { uniforms } = JSON.parse(Buffer.from(files['interface.json']));
+    assert.deepEqual(uniforms, shaders[id].uniforms);
+    assert.equal(files['material.bin'].length, uniforms.find(({ block }) => block === 'Material').size);
+    assert.equal(JSON.parse(Buffer.from(files['graph.json'])).template, 'forward');
+    assert.ok((await saved()).equals(bytes));
   }));
 
 test('a node of a graph leads to its lines, whatever it is called, and its lines to it', () =>

@@ -341,6 +341,30 @@ test('fog, tone mapping and the colour space are the renderer\'s', async () => {
   assert.notDeepEqual(at.toned[0], at.foggy[0]);
 });
 
+test('a rectangle lights what has the template for it, to its front', async () => {
+  const at = await inPage(() => {
+    const white = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } };
+    const scene = new THREE.Scene();
+    const mesh = quad();
+    const panel = new THREE.RectAreaLight(0xffffff, 3, 400, 400);
+    panel.position.z = 1;
+    panel.lookAt(0, 0, 0);
+    scene.add(mesh, panel);
+    const middle = (options) => {
+      mesh.material = lacquered.materialFrom(lacquer, white, mesh, { options });
+      return colours(scene, camera(), 1)[0];
+    };
+    const all = middle({ template: 'forward_area' });
+    const plain = middle({});
+    panel.lookAt(0, 0, 9);
+    return { all, plain, away: middle({ template: 'forward_area' }) };
+  });
+  // It covers all that a white surface sees.
+  assert.ok(at.all > 2.7 && at.all < 3.05, `${at.all}`);
+  assert.equal(at.plain, 0);
+  assert.equal(at.away, 0);
+});
+
 test('through glass the scene is seen, and no other glass', async () => {
   const at = await inPage(() => {
     const scene = new THREE.Scene();

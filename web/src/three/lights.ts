@@ -1,9 +1,9 @@
 // The lights of a scene of three.js as the elements of the block Lights.
 import {
-  Vector3, type Camera, type DirectionalLight, type Light, type Object3D, type PointLight, type Scene, type SpotLight,
+  Vector3, type Camera, type DirectionalLight, type Light, type Object3D, type PointLight, type RectAreaLight, type Scene, type SpotLight,
   type WebGLRenderer,
 } from 'three';
-import { lightValues, type PunctualLight } from '../webgpu.js';
+import { lightValues, type AreaLight, type PunctualLight } from '../webgpu.js';
 import type { Values } from '../types.js';
 
 const at = new Vector3();
@@ -16,8 +16,20 @@ function between(light: DirectionalLight | SpotLight): Triple {
   return to.sub(at).normalize().toArray();
 }
 
-/** Null for what glTF has no light for: ambient and hemisphere lights, probes, rectangles. */
-function punctual(light: Light): PunctualLight | null {
+function rectangle(light: RectAreaLight): AreaLight {
+  const [right, up] = [new Vector3(), new Vector3()];
+  light.matrixWorld.extractBasis(right, up, to);
+  const height = light.height * up.length();
+  return {
+    type: 'rect', position: at.setFromMatrixPosition(light.matrixWorld).toArray(), color: light.color.toArray() as Triple,
+    intensity: light.intensity, size: height, aspect: (light.width * right.length()) / height,
+    right: right.normalize().toArray(), up: up.normalize().toArray(),
+  };
+}
+
+/** Null for what glTF has no light for: ambient and hemisphere lights, probes. */
+function lightOf(light: Light, areas: boolean): PunctualLight | AreaLight | null {
+  if ((light as RectAreaLight).isRectAreaLight) return areas ? rectangle(light as RectAreaLight) : null;
   const position = at.setFromMatrixPosition(light.matrixWorld).toArray() as Triple;
   const color = light.color.toArray() as Triple;
   const common = { position, color, intensity: light.intensity };
@@ -38,32 +50,34 @@ export interface Lights {
 
 interface Seen {
   frame: number;
-  lights: PunctualLight[];
+  lights: Light[];
 }
 const seen = new WeakMap<Scene, Seen>();
-const kIdle = lightValues({ type: 'point', intensity: 0 });
+/** What the template forward_area has beside, of a light that is a point. */
+const kPoint = { area_x: [0, 0, 0], area_y: [0, 0, 0], area_radiance: [0, 0, 0], disk: 0 };
+const kIdle = { ...kPoint, ...lightValues({ type: 'point', intensity: 0 }) };
 
-function visible(from: Object3D, camera: Camera, lights: PunctualLight[]): void {
+function visible(from: Object3D, camera: Camera, lights: Light[]): void {
   if (!from.visible) return;
   const light = from as Light;
-  const made = light.isLight && light.layers.test(camera.layers) ? punctual(light) : null;
-  if (made) lights.push(made);
+  if (light.isLight && light.layers.test(camera.layers)) lights.push(light);
   for (const child of from.children) visible(child, camera, lights);
 }
 
-/** The first lights that a camera's layers see; those beyond the block's size are left out, which is said once. */
-export function lightsOf(renderer: WebGLRenderer, scene: Scene, camera: Camera, size: number): Lights {
+/** The first lights that a camera's layers see; those beyond the block's size are left out, which is said once. `areas`: the
+ * template has lights that have an area. */
+export function lightsOf(renderer: WebGLRenderer, scene: Scene, camera: Camera, size: number, areas: boolean): Lights {
   const { frame } = renderer.info.render;
   let known = seen.get(scene);
+  const most = known?.lights.length ?? 0;
   if (known?.frame !== frame) {
-    const lights: PunctualLight[] = [];
-    visible(scene, camera, lights);
-    if (lights.length > size && !(known && known.lights.length > size))
-      console.warn(`lacquer: the scene has ${lights.length} lights, of which the first ${size} are drawn`);
-    known = { frame, lights };
+    known = { frame, lights: [] };
+    visible(scene, camera, known.lights);
     seen.set(scene, known);
   }
-  const elements = known.lights.slice(0, size).map(lightValues);
+  const lights = known.lights.map((light) => lightOf(light, areas)).filter((light) => light !== null);
+  if (lights.length > size && most <= size) console.warn(`lacquer: the scene has ${lights.length} lights, of which the first ${size} are drawn`);
+  const elements: Values[] = lights.slice(0, size).map((light) => ({ ...kPoint, ...lightValues(light) }));
   const { length: count } = elements;
   while (elements.length < size) elements.push(kIdle);
   return { elements, count };

@@ -170,8 +170,9 @@ export class LacquerMaterial extends ShaderMaterial {
 
   private fillFrame(renderer: WebGLRenderer, scene: Scene, camera: Camera, frame: number): void {
     const lights = this.made.instances.get('Lights');
-    const size = this.made.interface.uniforms.find(({ block }) => block === 'Lights')?.array ?? 0;
-    const { elements, count } = lights ? lightsOf(renderer, scene, camera, size) : { elements: [], count: 0 };
+    const { array: size = 0, fields = [] } = this.made.interface.uniforms.find(({ block }) => block === 'Lights') ?? {};
+    const areas = fields.some(({ name }) => name === 'area_radiance');
+    const { elements, count } = lights ? lightsOf(renderer, scene, camera, size, areas) : { elements: [], count: 0 };
     if (lights) this.uniforms[lights].value = elements;
     const environment = this.environment ?? environmentIn(scene);
     for (const [name, texture] of Object.entries(environment.textures)) if (this.uniforms[name]) this.uniforms[name].value = texture;
