@@ -385,6 +385,28 @@ TEST(ImagesOfDocuments, AreMissedAtTheirPlace) {
   EXPECT_EQ(messages[0].column, 6U);
 }
 
+/// A node of a nodegraph without a material is called as the document calls it.
+TEST(PatternsAlone, AreLookedInto) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <nodegraph name="NG">
+    <constant name="x" type="color3"><input name="value" type="color3" value="0.25, 0.5, 0.75"/></constant>
+    <multiply name="m" type="color3">
+      <input name="in1" type="color3" nodename="x"/>
+      <input name="in2" type="color3" value="0.5, 0.5, 0.5"/>
+    </multiply>
+    <output name="out" type="color3" nodename="m"/>
+  </nodegraph>
+</materialx>)",
+                                        "alone.mtlx", {}, messages);
+  Trial trial;
+  trial.node = "NG/x";
+  const auto color = evaluate(scene, 0, "[{}]", Engine::Double, {}, {}, messages, trial);
+  ASSERT_TRUE(color) << (messages.empty() ? "" : messages[0].text);
+  const std::array<double, 3> expected = {0.25, 0.5, 0.75};
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
+}
+
 /// A procedural's output is a node's: of a nodegraph's own number there is one.
 TEST(Procedurals, HaveNodesOfNumbersAlone) {
   Messages messages;

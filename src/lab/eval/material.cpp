@@ -442,6 +442,12 @@ Result<void> EvalMaterial::replaceColumns(std::map<std::string, eval::Column> co
 Result<graph::Source> EvalMaterial::look(const graph::Graph& graph, const Language& library,
                                          const graph::FlatOutputs& outputs) {
   Result<graph::Source> source = graph::outputAt(outputs, trial_.node);
+  // A material that is a nodegraph's pattern alone is called as the graph, whose nodes are its own.
+  const std::string within = graph.name.substr(0, graph.name.find('/')) + "/";
+  if (!source && trial_.node.starts_with(within)) {
+    Result<graph::Source> own = graph::outputAt(outputs, trial_.node.substr(within.size()));
+    if (own) source = std::move(own);
+  }
   if (!source) return source;
   const graph::Contracts contracts(graph, library);
   const std::optional<graph::Offer> offer = contracts.offer(*source, contracts.main());
