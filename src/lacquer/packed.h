@@ -17,7 +17,7 @@
 #include <stdint.h>
 
 #define LACQUER_PACKED_MAGIC 0x4d50514cu /* "LQPM" */
-#define LACQUER_PACKED_VERSION 1u
+#define LACQUER_PACKED_VERSION 2u
 #define LACQUER_PACKED_NONE 0xffffffffu /* no index */
 
 /* `count` elements from the byte `at` of the file on. The comment behind a list names its elements. */
@@ -153,13 +153,14 @@ typedef struct {
 } lacquer_packed_code;
 
 /* Where a block or a texture is bound: by Vulkan, by OpenGL and HLSL (`flat`); by WGSL and by MSL where the
- * file has their shaders, else 0. Either stage may read it. */
+ * file has their shaders, else 0. */
 typedef struct {
   uint32_t set, binding, flat;
   uint32_t wgsl_group, wgsl_binding, wgsl_sampler;
   /* Plain bindings, or with argument buffers [[id(msl_index)]] of the buffer `msl_argument_buffer`, which
    * else is LACQUER_PACKED_NONE. */
   uint32_t msl_index, msl_sampler, msl_argument_buffer;
+  uint32_t stages; /* that read it: 1 the vertex stage, 2 the fragment stage, 3 both */
 } lacquer_packed_place;
 
 typedef struct {

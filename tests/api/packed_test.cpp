@@ -115,6 +115,8 @@ void compareShader(const PackedFile& packed, const lacquer_packed_shader& shader
     EXPECT_EQ(packed.text(blocks[i].name), from.name);
     EXPECT_EQ(blocks[i].place.binding, from.at.binding);
     EXPECT_EQ(blocks[i].place.set, from.at.set);
+    EXPECT_EQ(blocks[i].place.stages, (from.vertex ? 1U : 0U) + (from.fragment ? 2U : 0U));
+    EXPECT_NE(blocks[i].place.stages, 0U);
     EXPECT_EQ(blocks[i].size, from.size);
     const auto fields = packed.all<lacquer_packed_field>(blocks[i].fields);
     ASSERT_EQ(fields.size(), from.fields.size());
@@ -124,7 +126,12 @@ void compareShader(const PackedFile& packed, const lacquer_packed_shader& shader
       EXPECT_EQ(fields[k].offset, from.fields[k].offset);
     }
   }
-  EXPECT_EQ(packed.all<lacquer_packed_texture>(shader.textures).size(), reflection.textures.size());
+  const auto textures = packed.all<lacquer_packed_texture>(shader.textures);
+  ASSERT_EQ(textures.size(), reflection.textures.size());
+  for (size_t i = 0; i < textures.size(); ++i) {
+    const ReflectedTexture& from = reflection.textures[i];
+    EXPECT_EQ(textures[i].place.stages, (from.vertex ? 1U : 0U) + (from.fragment ? 2U : 0U));
+  }
   EXPECT_EQ(packed.all<lacquer_packed_input>(shader.inputs).size(), reflection.inputs.size());
   EXPECT_EQ(packed.all<lacquer_packed_output>(shader.outputs).size(), reflection.outputs.size());
   EXPECT_EQ(packed.all<lacquer_packed_spec_constant>(shader.spec_constants).size(),
@@ -263,7 +270,7 @@ TEST(Packed, isRefusedWhereItIsNotWhole) {
   for (size_t size = 0; size < bytes.size(); ++size)
     ASSERT_EQ(PackedFile(std::string_view(bytes).substr(0, size)).top, nullptr) << size;
   std::string other = bytes;
-  other[4] = 2;
+  other[4] = LACQUER_PACKED_VERSION + 1;
   EXPECT_EQ(PackedFile(other).top, nullptr);
   std::vector<uint64_t> memory(bytes.size() / 8 + 2);
   char* const shifted = reinterpret_cast<char*>(memory.data()) + 4;

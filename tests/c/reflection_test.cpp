@@ -18,6 +18,13 @@ using nlohmann::json;
 constexpr const char* kRoles[] = {"frame", "lights", "material", "object", "list"};
 constexpr const char* kTextureRoles[] = {"material", "environment", "object"};
 
+json stagesOf(bool vertex, bool fragment) {
+  json stages = json::array();
+  if (vertex) stages.push_back("vertex");
+  if (fragment) stages.push_back("fragment");
+  return stages;
+}
+
 /// The rows of the entry from values of C++.
 json blocksOf(const Reflection& of) {
   json rows = json::array();
@@ -31,6 +38,7 @@ json blocksOf(const Reflection& of) {
                     {"set", block.at.set},
                     {"binding", block.at.binding},
                     {"flat", block.at.flat},
+                    {"stages", stagesOf(block.vertex, block.fragment)},
                     {"fields", std::move(fields)}});
   }
   return rows;
@@ -52,6 +60,7 @@ json blocksOf(const lacquer_shader* shader) {
                     {"set", block.at.set},
                     {"binding", block.at.binding},
                     {"flat", block.at.flat},
+                    {"stages", stagesOf(block.at.vertex != 0, block.at.fragment != 0)},
                     {"fields", std::move(fields)}});
   }
   EXPECT_EQ(rows.size(), lacquer_shader_block_count(shader));
@@ -66,7 +75,7 @@ json blocksOf(const json& entry) {
     for (const json& field : block["fields"])
       fields.push_back({{"name", field["name"]}, {"type", field["type"]}, {"offset", field["offset"]}});
     json row = {{"list", block.value("list", "")}, {"fields", std::move(fields)}};
-    for (const char* name : {"block", "role", "set", "binding", "flat"}) row[name] = block[name];
+    for (const char* name : {"block", "role", "set", "binding", "flat", "stages"}) row[name] = block[name];
     rows.push_back(std::move(row));
   }
   return rows;
@@ -76,10 +85,11 @@ json texturesOf(const lacquer_shader* shader) {
   json rows = json::array();
   lacquer_texture texture;
   for (size_t t = 0; lacquer_shader_texture(shader, t, &texture, sizeof texture) != 0; ++t) {
-    json row = {{"name", texture.name},       {"type", texture.type},
-                {"sampler", texture.sampler}, {"role", kTextureRoles[texture.role]},
-                {"set", texture.at.set},      {"binding", texture.at.binding},
-                {"flat", texture.at.flat}};
+    json row = {
+        {"name", texture.name},       {"type", texture.type},
+        {"sampler", texture.sampler}, {"role", kTextureRoles[texture.role]},
+        {"set", texture.at.set},      {"binding", texture.at.binding},
+        {"flat", texture.at.flat},    {"stages", stagesOf(texture.at.vertex != 0, texture.at.fragment != 0)}};
     if (texture.role == LACQUER_TEXTURE_MATERIAL) row["color_space"] = texture.srgb != 0 ? "srgb" : "linear";
     rows.push_back(std::move(row));
   }

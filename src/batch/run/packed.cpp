@@ -294,6 +294,7 @@ lacquer_packed_file Packer::file(const FileContract& from) {
 lacquer_packed_place Packer::place(const BoundResource& from, bool sampled) const {
   lacquer_packed_place to{};
   to.set = from.at.set, to.binding = from.at.binding, to.flat = from.at.flat;
+  to.stages = (from.vertex ? 1U : 0U) | (from.fragment ? 2U : 0U);
   const auto has = [&](Target target) {
     return std::any_of(shader_->codes.begin(), shader_->codes.end(),
                        [&](const PackedCode& one) { return one.target == targetName(target); });

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 #include <type_traits>
+#include <vector>
 
 #include "lacquer/manifest.h"
 #include "setting/attributes.h"
@@ -67,6 +68,12 @@ struct Words<Filter> {
 template <>
 struct Words<Change> {
   static constexpr std::string_view kAll[] = {"nothing", "numbers", "textures", "program"};
+};
+/// That reads a block or a texture.
+enum class Stage : uint8_t { Vertex, Fragment };
+template <>
+struct Words<Stage> {
+  static constexpr std::string_view kAll[] = {"vertex", "fragment"};
 };
 /// Empty for what is no enumerator.
 template <class Enum>
@@ -433,11 +440,19 @@ void members(A& a, Of<A, FileContract>& of) {
 
 // -- shaders
 
+/// Where it is bound, and for which stages.
 template <class A>
-void place(A& a, Of<A, BindingPoint>& at) {
-  a("set", at.set);
-  a("binding", at.binding);
-  a("flat", at.flat);
+void place(A& a, Of<A, BoundResource>& of) {
+  a("set", of.at.set);
+  a("binding", of.at.binding);
+  a("flat", of.at.flat);
+  std::vector<Stage> stages;
+  if (of.vertex) stages.push_back(Stage::Vertex);
+  if (of.fragment) stages.push_back(Stage::Fragment);
+  a("stages", stages);
+  if constexpr (A::kReads) {
+    for (const Stage stage : stages) (stage == Stage::Vertex ? of.vertex : of.fragment) = true;
+  }
 }
 
 template <class A>
@@ -466,7 +481,7 @@ void members(A& a, Of<A, UniformBlock>& of) {
   a("block", of.name);
   a("role", of.role);
   a.some("struct", of.structure);
-  place(a, of.at);
+  place(a, of);
   a.some("list", of.list);
   a.some("array", of.array);
   // Of one element where there are several, and of all of them.
@@ -510,7 +525,7 @@ void members(A& a, Of<A, ReflectedTexture>& of) {
   a("name", of.name);
   a("type", of.type);
   a("sampler", of.sampler);
-  place(a, of.at);
+  place(a, of);
   a("role", of.role);
   if (of.role == TextureRole::Material) colorSpace(a, of.srgb);
 }
