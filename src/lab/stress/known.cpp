@@ -11,6 +11,9 @@ struct Known {
   std::string_view why;
 };
 
+constexpr std::string_view kEdge =
+    "a light has an edge: from its own plane, and at a corner, it is seen or not";
+
 constexpr Known kKnown[] = {
     {"distribution", "0 < NdotSum",
      "Appendix B's D ends with a step at N.H = 0; it is seen past the horizon alone"},
@@ -56,10 +59,32 @@ constexpr Known kKnown[] = {
     {"extinction", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
     {"light_", "layer < 0", "a light has a layer of a texture, or none"},
     {"scaled_normal", "mul < 0", "a scale that mirrors turns the surface over"},
-    {"area_", "", "a light has an edge: from its own plane, and at a corner, it is seen or not"},
-    {"_among_lights", "", "a light has an edge: from its own plane, and at a corner, it is seen or not"},
-    {"_covers", "", "a light has an edge: from its own plane, and at a corner, it is seen or not"},
-    {"edge_above", "", "an edge that ends at the horizon goes below it or does not"},
+    {"area_", "0 < dot", kEdge},
+    {"area_", "0 < mul", kEdge},
+    {"area_", "0 < w", kEdge},
+    {"area_", "ab < 0", kEdge},
+    {"area_", " < sphere", kEdge},
+    {"area_", "swizzle < 0", kEdge},
+    {"area_", "0.5 < disk", "a choice"},
+    {"area_", "sine2 < 1e-10", "a view along the normal is on no side of it"},
+    {"_among_lights", "0 < dot", kEdge},
+    {"_among_lights", "0 < mul", kEdge},
+    {"_among_lights", "0 < w", kEdge},
+    {"_among_lights", "ab < 0", kEdge},
+    {"_among_lights", " < sphere", kEdge},
+    {"_among_lights", "swizzle < 0", kEdge},
+    {"_among_lights", "0.5 < disk", "a choice"},
+    {"_among_lights", "sine2 < 1e-10", "a view along the normal is on no side of it"},
+    {"_among_lights", "swizzle == 0", "a tangent of no length has no direction"},
+    {"_among_lights", "dot < 0", "a closure has two sides that are alike, and a normal on the view's"},
+    {"_covers", "0 < dot", kEdge},
+    {"_covers", "0 < mul", kEdge},
+    {"_covers", "0 < w", kEdge},
+    {"_covers", "ab < 0", kEdge},
+    {"_covers", " < sphere", kEdge},
+    {"_covers", "swizzle < 0", kEdge},
+    {"edge_above", "end_z < 0", "an edge that ends at the horizon goes below it or does not"},
+    {"edge_above", "swizzle < 0", "an edge that ends at the horizon goes below it or does not"},
     {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
     // Of nodes/standard/, whose texts ask for steps.
     {"ifgreater", "value1", "a comparison"},
