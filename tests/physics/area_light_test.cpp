@@ -51,10 +51,12 @@ Area facing(const Vec3& centre, double half_x, double half_y, bool disk, double 
           disk};
 }
 
-/// What a lobe about z sees of a light; `cosine` is Lambert's.
+enum class Of : uint8_t { Facets, Grooves, Fibres, Cosine };
+
+/// What a lobe about z sees of a light; the cosine's is Lambert's.
 struct Query {
   Lobe lobe;
-  bool cosine = false;
+  Of of = Of::Facets;
   Area area;
   double exact = 0, seen = 0;
   bool cut() const {  ///< the horizon cuts it
@@ -100,6 +102,20 @@ eval::Column numbersOf(const std::vector<Query>& queries, const std::function<do
   return eval::Column::perPoint(1, std::move(values));
 }
 
+/// The normals that stretched lobes are seen about, and those of the others.
+template <class T>
+std::vector<T> normalsOf(const std::vector<Query>& queries) {
+  const auto normals = nodeValues<T>(
+      "bent_normal", "",
+      {{"N", eval::Column::constant({0, 0, 1})},
+       {"B", eval::Column::constant({0, 1, 0})},
+       {"V", columnOf(queries, [](const Query& q) { return q.lobe.v; })},
+       {"strength", numbersOf(queries, [](const Query& q) { return q.lobe.strength; })},
+       {"roughness", numbersOf(queries, [](const Query& q) { return std::min(q.lobe.roughness, 1.0); })}},
+      queries.size());
+  return normals.empty() ? std::vector<T>() : normals[0];
+}
+
 /// What the library's nodes see, in T.
 template <class T>
 std::vector<double> seenBy(const std::vector<Query>& queries) {
@@ -116,10 +132,11 @@ std::vector<double> seenBy(const std::vector<Query>& queries) {
                      {"radiance", eval::Column::constant({1, 1, 1})},
                      {"disk", numbersOf(queries, [](const Query& q) { return q.area.disk ? 1.0 : 0.0; })}},
                     n);
-  const auto frame = nodeValues<T>("area_frame", "",
-                                   {{"N", eval::Column::constant({0, 0, 1})},
-                                    {"V", columnOf(queries, [](const Query& q) { return q.lobe.v; })}},
-                                   n);
+  const std::vector<T> normals = normalsOf<T>(queries);
+  if (normals.empty()) return {};
+  const auto frame = nodeValues<T>(
+      "area_frame", "",
+      {{"N", column(3, normals)}, {"V", columnOf(queries, [](const Query& q) { return q.lobe.v; })}}, n);
   if (light.empty() || frame.empty()) return {};
   const auto lobe =
       nodeValues<T>("area_lobe", "",
@@ -129,13 +146,13 @@ std::vector<double> seenBy(const std::vector<Query>& queries) {
   if (lobe.empty()) return {};
   std::array<std::vector<T>, 3> shape = {lobe[0], lobe[1], lobe[2]};
   for (size_t i = 0; i < n; ++i) {
-    if (!queries[i].cosine) continue;
+    if (queries[i].of != Of::Cosine) continue;
     shape[0][i] = 1;
     shape[1][i] = 0;
     shape[2][i] = 1;
   }
   const auto seen = nodeValues<T>("area_seen", "",
-                                  {{"N", eval::Column::constant({0, 0, 1})},
+                                  {{"N", column(3, normals)},
                                    {"T", column(3, frame[0])},
                                    {"B", column(3, frame[1])},
                                    {"centre", column(3, light[0])},
@@ -162,9 +179,70 @@ double cosineMean(const Area& area, int steps = 256, int turns = 384) {
   return static_cast<double>(hits) / (steps * turns);
 }
 
+/// The lobe of the sheen's fibres as directions of light, and how much of it lies in each.
+struct Fibres {
+  std::vector<Vec3> lights;
+  std::vector<double> weights;
+  double whole = 0;
+
+  explicit Fibres(const Lobe& lobe) {
+    overHemisphere(
+        [&](double cosine, double azimuth) {
+          const Vec3 light = tilted(cosine, azimuth);
+          // As overHemisphere() sums them: more of them towards grazing, which weigh less.
+          lights.push_back(light);
+          weights.push_back(static_cast<double>(charlie(lobe.v, light, lobe.roughness)) * cosine *
+                            std::pow(cosine, 2.0 / 3));
+          whole += weights.back();
+          return 0.0;
+        },
+        192, 256);
+  }
+  double part(const Area& area) const {
+    double seen = 0;
+    for (size_t i = 0; i < lights.size(); ++i) seen += area.hit(lights[i]) ? weights[i] : 0;
+    return seen / whole;
+  }
+};
+
+constexpr double kStrengths[] = {0.3, 0.6, 1};
+
+void addFibres(std::vector<Query>& all) {
+  for (const double view : {1.0, 0.5, 0.1}) {
+    const Vec3 v = tilted(view);
+    for (const double roughness : {0.3, 0.5, 0.7, 1.0}) {
+      const Lobe lobe{roughness, 0, v};
+      const Fibres fibres(lobe);
+      for (const Area& area : areasAbout(mirrored(v, {0, 0, 1})))
+        all.push_back({lobe, Of::Fibres, area, fibres.part(area)});
+    }
+  }
+}
+
+/// Seen along the grooves, across them and between.
+void addGrooves(std::vector<Query>& all) {
+  for (const double azimuth : {0.0, 0.8, 1.57}) {
+    for (const double view : {0.8, 0.25}) {
+      const Vec3 v = tilted(view, azimuth);
+      for (const double roughness : {0.1, 0.35, 0.6}) {
+        for (const double strength : kStrengths) {
+          const Lobe lobe{roughness, strength, v};
+          const Quadrature quadrature(lobe, 128, 192);
+          for (const Area& area : areasAbout(mirrored(v, {0, 0, 1}))) {
+            const auto hit = [&](const Vec3& light) { return area.hit(light) ? 1.0 : 0.0; };
+            all.push_back({lobe, Of::Grooves, area, quadrature.mean(hit)});
+          }
+        }
+      }
+    }
+  }
+}
+
 const std::vector<Query>& queries() {
   static const std::vector<Query> kQueries = [] {
     std::vector<Query> all;
+    addFibres(all);
+    addGrooves(all);
     for (const double view : kViews) {
       const Vec3 v = tilted(view);
       const Vec3 mirror = mirrored(v, {0, 0, 1});
@@ -173,11 +251,11 @@ const std::vector<Query>& queries() {
         const Lobe lobe{roughness, 0, v};
         const Quadrature quadrature(lobe, 256, 384);
         for (const Area& area : areas) {
-          all.push_back(
-              {lobe, false, area, quadrature.mean([&](const Vec3& l) { return area.hit(l) ? 1.0 : 0.0; })});
+          all.push_back({lobe, Of::Facets, area,
+                         quadrature.mean([&](const Vec3& l) { return area.hit(l) ? 1.0 : 0.0; })});
         }
       }
-      for (const Area& area : areas) all.push_back({{1, 0, v}, true, area, cosineMean(area)});
+      for (const Area& area : areas) all.push_back({{1, 0, v}, Of::Cosine, area, cosineMean(area)});
     }
     const std::vector<double> seen = seenBy<double>(all);
     for (size_t i = 0; i < seen.size(); ++i) all[i].seen = seen[i];
@@ -219,31 +297,39 @@ std::string errorTable() {
   std::string text =
       "| lobe | rectangles: RMS | mean | largest | discs: RMS | mean | largest "
       "|\n|---|---|---|---|---|---|---|\n";
-  text += row("the cosine's, above the horizon", [](const Query& q) { return q.cosine && !q.cut(); });
-  text += row("the cosine's, cut by the horizon", [](const Query& q) { return q.cosine && q.cut(); });
+  text +=
+      row("the cosine's, above the horizon", [](const Query& q) { return q.of == Of::Cosine && !q.cut(); });
+  text +=
+      row("the cosine's, cut by the horizon", [](const Query& q) { return q.of == Of::Cosine && q.cut(); });
   for (const double r : kRoughnesses) {
     text += row(fmt::format("roughness {}", r),
-                [r](const Query& q) { return !q.cosine && q.lobe.roughness == r; });
+                [r](const Query& q) { return q.of == Of::Facets && q.lobe.roughness == r; });
   }
   for (const double v : kViews) {
     text += row(fmt::format("view's cosine {}", v),
-                [v](const Query& q) { return !q.cosine && std::abs(q.lobe.v[2] - v) < 1e-9; });
+                [v](const Query& q) { return q.of == Of::Facets && std::abs(q.lobe.v[2] - v) < 1e-9; });
   }
-  text += row("all of GGX, above the horizon", [](const Query& q) { return !q.cosine && !q.cut(); });
-  text += row("all of GGX, cut by the horizon", [](const Query& q) { return !q.cosine && q.cut(); });
+  text += row("all of GGX, above the horizon", [](const Query& q) { return q.of == Of::Facets && !q.cut(); });
+  text += row("all of GGX, cut by the horizon", [](const Query& q) { return q.of == Of::Facets && q.cut(); });
+  for (const double strength : kStrengths) {
+    text += row(fmt::format("stretched, strength {}", strength),
+                [strength](const Query& q) { return q.of == Of::Grooves && q.lobe.strength == strength; });
+  }
+  text += row("the sheen's fibres", [](const Query& q) { return q.of == Of::Fibres; });
   return text;
 }
 
 TEST(AreaLights, AreSeenAsQuadratureSeesThem) {
   fmt::print("{}", errorTable());
-  const Errors flat = errorsOf([](const Query& q) { return q.cosine && !q.area.disk; });
-  const Errors round = errorsOf([](const Query& q) { return q.cosine && q.area.disk && !q.cut(); });
+  const Errors flat = errorsOf([](const Query& q) { return q.of == Of::Cosine && !q.area.disk; });
+  const Errors round = errorsOf([](const Query& q) { return q.of == Of::Cosine && q.area.disk && !q.cut(); });
   // Of the quadrature, whose directions hit or miss.
   EXPECT_LT(flat.largest, 2e-3);
   EXPECT_LT(round.largest, 2e-3);
-  EXPECT_LT(errorsOf([](const Query& q) { return q.cosine && q.area.disk && q.cut(); }).largest, 0.05);
+  EXPECT_LT(errorsOf([](const Query& q) { return q.of == Of::Cosine && q.area.disk && q.cut(); }).largest,
+            0.05);
   for (const bool disk : {false, true}) {
-    const Errors all = errorsOf([&](const Query& q) { return !q.cosine && q.area.disk == disk; });
+    const Errors all = errorsOf([&](const Query& q) { return q.of == Of::Facets && q.area.disk == disk; });
     EXPECT_LT(all.rms, 0.03) << disk;
     EXPECT_LT(all.mean, 0.015) << disk;
   }
@@ -255,8 +341,8 @@ TEST(AreaLights, AWhiteCeilingIsWhite) {
   for (const double roughness : {0.0, 0.1, 0.3, 0.5, 0.8, 1.0}) {
     for (const double view : {1.0, 0.7, 0.3, 0.05, 0.001}) {
       for (const bool disk : {false, true}) {
-        for (const bool cosine : {false, true}) {
-          all.push_back({{roughness, 0, tilted(view)}, cosine, facing({0, 0, 1e-3}, 1e3, 1e3, disk)});
+        for (const Of of : {Of::Facets, Of::Cosine}) {
+          all.push_back({{roughness, 0, tilted(view)}, of, facing({0, 0, 1e-3}, 1e3, 1e3, disk)});
         }
       }
     }
@@ -265,7 +351,7 @@ TEST(AreaLights, AWhiteCeilingIsWhite) {
     ASSERT_EQ(seen.size(), all.size());
     for (size_t i = 0; i < all.size(); ++i) {
       EXPECT_LE(seen[i], 1);
-      EXPECT_GT(seen[i], all[i].lobe.v[2] < 0.01 && !all[i].cosine ? 0.99 : 0.999)
+      EXPECT_GT(seen[i], all[i].lobe.v[2] < 0.01 && all[i].of == Of::Facets ? 0.99 : 0.999)
           << all[i].lobe.roughness << " " << all[i].lobe.v[2] << " " << all[i].area.disk;
     }
   }
@@ -290,7 +376,8 @@ std::vector<Query> hostile() {
     if (i % 11 == 6) area.y = {-area.y[0], -area.y[1], -area.y[2]};
     if (i % 11 == 7) area.centre = sum(area.x, area.y, between(-2, 2));
     if (i % 11 == 8) area.centre = area.x = area.y = {0, 0, 0};
-    all.push_back({{i % 3 == 0 ? 0 : between(0, 1), 0, tilted(view)}, i % 5 == 0, area});
+    all.push_back(
+        {{i % 3 == 0 ? 0 : between(0, 1), 0, tilted(view)}, i % 5 == 0 ? Of::Cosine : Of::Facets, area});
   }
   return all;
 }
@@ -324,7 +411,7 @@ TEST(AreaLights, TheFrameOfAViewAlongTheNormalIsAnyFrame) {
     std::vector<Query> all;
     for (const double sine : {0.0, 0.99e-5, 1.01e-5}) {
       const Vec3 v = {0, sine, std::sqrt(1 - sine * sine)};
-      all.push_back({{roughness, 0, v}, false, facing({0.1, 0.2, 1}, 0.2, 0.5, false)});
+      all.push_back({{roughness, 0, v}, Of::Facets, facing({0.1, 0.2, 1}, 0.2, 0.5, false)});
     }
     const std::vector<double> seen = seenBy<double>(all);
     EXPECT_NEAR(seen[1], seen[0], 5e-3);

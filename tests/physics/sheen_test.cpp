@@ -13,10 +13,6 @@ namespace lacquer::physics {
 namespace {
 
 using nlohmann::json;
-using Real = long double;
-
-constexpr double kAlphaMin = 0.002;
-
 json sheen(const Vec3& color, double roughness) {
   return {{"KHR_materials_sheen", {{"sheenColorFactor", color}, {"sheenRoughnessFactor", roughness}}}};
 }
@@ -27,32 +23,6 @@ Configuration with(bool table, bool ibl = false) {
   setup.dfg_table = table;
   setup.ibl = ibl;
   return setup;
-}
-
-// -- the text, in its own form, in long double. It shares nothing with nodes/. --
-
-Real l(Real x, Real alpha_g) {
-  const Real k = (1 - alpha_g) * (1 - alpha_g);
-  const auto mix = [k](Real a, Real b) { return a * (1 - k) + b * k; };
-  return mix(21.5473L, 25.3245L) / (1 + mix(3.82987L, 3.32435L) * std::pow(x, mix(0.19823L, 0.16801L))) +
-         mix(-1.97760L, -1.27393L) * x + mix(-4.32054L, -4.85967L);
-}
-
-Real lambdaSheen(Real cosine, Real alpha_g) {
-  return std::abs(cosine) < 0.5L ? std::exp(l(cosine, alpha_g))
-                                 : std::exp(2 * l(0.5L, alpha_g) - l(1 - cosine, alpha_g));
-}
-
-/// D V of the text between two unit vectors above the normal (0, 0, 1).
-Real charlie(const Vec3& v, const Vec3& light, double roughness) {
-  const Real alpha_g = std::max(roughness * roughness, kAlphaMin);
-  Vec3 h{};
-  for (size_t i = 0; i < 3; ++i) h[i] = v[i] + light[i];
-  h = normalized(h);
-  const Real sin2h = static_cast<Real>(h[0]) * h[0] + static_cast<Real>(h[1]) * h[1];
-  const Real pi = std::acos(-1.0L);
-  const Real d = (2 + 1 / alpha_g) * std::pow(sin2h, 0.5L / alpha_g) / (2 * pi);
-  return d / ((1 + lambdaSheen(v[2], alpha_g) + lambdaSheen(light[2], alpha_g)) * (4 * v[2] * light[2]));
 }
 
 /// What D V reflects, by quadrature: E of the text, which may pass 1.
@@ -252,13 +222,13 @@ double floatErrorOfTheLobe(double alpha) {
 TEST(SheenReadings, E59AlphaIsClampedWhereFloatLosesTheLobe) {
   const Sample s = seen(0.03, 0.05, 1);
   const auto lobe = [&](double roughness) { return split(s, whiteSheen(roughness), with(false)).lobe; };
-  EXPECT_EQ(lobe(0), lobe(std::sqrt(kAlphaMin) * 0.9));
-  EXPECT_NE(lobe(0), lobe(std::sqrt(kAlphaMin) * 1.05));
-  const double at_clamp = floatErrorOfTheLobe(kAlphaMin);
-  const double below = floatErrorOfTheLobe(kAlphaMin / 2);
+  EXPECT_EQ(lobe(0), lobe(std::sqrt(kSheenAlphaMin) * 0.9));
+  EXPECT_NE(lobe(0), lobe(std::sqrt(kSheenAlphaMin) * 1.05));
+  const double at_clamp = floatErrorOfTheLobe(kSheenAlphaMin);
+  const double below = floatErrorOfTheLobe(kSheenAlphaMin / 2);
   fmt::print(
       "sheen's lobe in float: relative error {:.1e} at the clamp, {:.1e} at half of it, {:.1e} at a tenth\n",
-      at_clamp, below, floatErrorOfTheLobe(kAlphaMin / 10));
+      at_clamp, below, floatErrorOfTheLobe(kSheenAlphaMin / 10));
   EXPECT_LT(at_clamp, 1.2e-4);
   EXPECT_GT(below, 1.2e-4);
 }
