@@ -29,7 +29,7 @@ bool parseSize(std::string_view text, uint64_t& size) {
   uint64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{}) return false;
-  std::string unit = lowered({end, text.data() + text.size()});
+  std::string unit = lowered(text.substr(static_cast<size_t>(end - text.data())));
   unit.erase(0, unit.find_first_not_of(' '));
   size_t shift = 0;
   if (const size_t place = unit.empty() ? std::string_view::npos : kUnits.find(unit[0]);
