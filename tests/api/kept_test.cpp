@@ -1,4 +1,6 @@
 // MaterialX documents whose surfaces have MaterialX's formulas: written as they were read.
+#include <fmt/format.h>
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -365,6 +367,33 @@ TEST(UnlitSurfaces, AreWrittenToGltfByTheirDefinition) {
   ASSERT_TRUE(color) << (messages.empty() ? "" : messages[0].text);
   const std::array<double, 4> expected = {0.25, 0.5, 0.75, 1};
   for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
+}
+
+/// Definitions that each use the one before twice: a few kilobytes that are 2^40 nodes.
+TEST(Doubling, IsRefusedBeforeItIsWrittenOut) {
+  std::string text = R"(<materialx version="1.39">
+<nodedef name="D0" node="f0"><input name="x" type="color3" value="1,1,1"/><output name="out" type="color3"/></nodedef>
+<nodegraph name="G0" nodedef="D0"><add name="a" type="color3"><input name="in1" type="color3" interfacename="x"/>
+<input name="in2" type="color3" value="0,0,1"/></add><output name="out" type="color3" nodename="a"/></nodegraph>)";
+  constexpr int kLevels = 40;
+  for (int i = 1; i <= kLevels; ++i) {
+    text += fmt::format(R"(
+<nodedef name="D{0}" node="f{0}"><input name="x" type="color3" value="1,1,1"/><output name="out" type="color3"/></nodedef>
+<nodegraph name="G{0}" nodedef="D{0}"><f{1} name="a" type="color3"><input name="x" type="color3" interfacename="x"/></f{1}>
+<f{1} name="b" type="color3"><input name="x" type="color3" nodename="a"/></f{1}><output name="out" type="color3" nodename="b"/></nodegraph>)",
+                        i, i - 1);
+  }
+  text += fmt::format(R"(
+<f{} name="q" type="color3"/>
+<surface_unlit name="s" type="surfaceshader"><input name="emission_color" type="color3" nodename="q"/></surface_unlit>
+<surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)",
+                      kLevels);
+  Messages messages;
+  const Scene scene = Scene::fromMemory(text, "doubling.mtlx", {}, messages);
+  EXPECT_EQ(toGltf(scene, {}, 4, {}, messages), "");
+  ASSERT_FALSE(messages.empty());
+  EXPECT_EQ(messages[0].code, "graph-too-large");
 }
 
 /// What is wrong with an image is told where its name stands.

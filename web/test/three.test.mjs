@@ -132,7 +132,9 @@ async function besideTheLibrary({ text, material, texel, environment }) {
   const images = (file.textures ?? []).map((_, i) => ({ uri: `${i}.png` }));
   const alone = { asset: file.asset, materials: [look], images, textures: images.map((_, source) => ({ source })) };
   const graph = lacquer.scene(JSON.stringify(alone), 'a.gltf').graph(0, {}, lacquered.attributesOf(mesh));
-  const texels = graph.textures().map(({ name }) => `${name}=${texel.map((x) => x / 255).join()}`);
+  const decoded = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+  const linear = (srgb) => texel.map((x, i) => (srgb && i < 3 ? decoded(x / 255) : x / 255));
+  const texels = graph.textures().map(({ name, srgb }) => `${name}=${linear(srgb).join()}`);
   const { rgba } = graph.evaluate(points, { texels, ibl: false });
   mesh.material.dispose();
   return { drawn, expected: rgba.flat(), names: graph.textures().map(({ name }) => name), lod: mesh.material.looksThrough };
@@ -389,6 +391,111 @@ test('through glass the scene is seen, and no other glass', async () => {
   // Fresnel takes four hundredths.
   [0.2, 0.8, 0.4].forEach((x, i) => assert.ok(Math.abs(at.middle[i] - 0.96 * x) < 0.02, `${at.middle}`));
   assert.deepEqual(at.visible, [true, true]);
+});
+
+test('two renderers draw one scene, each as it is now', async () => {
+  const [first, second, changed] = await inPage(() => {
+    const other = new THREE.WebGLRenderer();
+    const mesh = quad();
+    mesh.material = lacquered.materialFrom(lacquer, { pbrMetallicRoughness: { metallicFactor: 0 } }, mesh);
+    const scene = new THREE.Scene();
+    const light = lamp();
+    scene.add(mesh, light);
+    const drawn = (by) => {
+      const target = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType });
+      by.info.render.frame = 1000; // what the two would share
+      by.setRenderTarget(target);
+      by.render(scene, camera());
+      const rgba = new Float32Array(4);
+      by.readRenderTargetPixels(target, 0, 0, 1, 1, rgba);
+      by.setRenderTarget(null);
+      return rgba[0];
+    };
+    const made = [drawn(renderer), drawn(other)];
+    light.intensity *= 2;
+    drawn(renderer);
+    made.push(drawn(other));
+    other.dispose();
+    return made;
+  });
+  assert.equal(first, second);
+  assert.ok(Math.abs(changed / first - 2) < 1e-3, `${first} ${changed}`);
+});
+
+test('glass leaves the faces of a cube, and what hangs below it, as they are', async () => {
+  const at = await inPage(() => {
+    const scene = new THREE.Scene();
+    const glass = new THREE.Mesh(new THREE.SphereGeometry(0.3));
+    const clear = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 0 }, extensions: { KHR_materials_transmission: { transmissionFactor: 1 } } };
+    glass.material = lacquered.materialFrom(lacquer, clear, glass);
+    const wall = new THREE.Mesh(new THREE.BoxGeometry(8, 8, 8), new THREE.MeshBasicMaterial({ color: 0xffffff, side: THREE.BackSide }));
+    glass.position.set(0, 0, -2);
+    wall.position.set(0, 0, 2);
+    glass.add(wall); // behind it, and below it
+    scene.add(glass);
+    const target = new THREE.WebGLCubeRenderTarget(4, { type: THREE.FloatType });
+    new THREE.CubeCamera(0.1, 100, target).update(renderer, scene);
+    const faces = Array.from({ length: 6 }, (_, face) => {
+      const rgba = new Float32Array(4 * 16);
+      renderer.readRenderTargetPixels(target, 0, 0, 4, 4, rgba, face);
+      return rgba[0];
+    });
+    const eye = new THREE.PerspectiveCamera(20, 1, 0.1, 20);
+    return { faces, through: colours(scene, eye, 9)[4 * 40] };
+  });
+  at.faces.forEach((x, face) => assert.ok(x > 0.99, `face ${face}: ${at.faces}`));
+  assert.ok(at.through > 0.9, `${at.through}`);
+});
+
+test('what is wrong is refused and changes nothing', async () => {
+  const said = await inPage(() => {
+    const mesh = quad();
+    const scene = new THREE.Scene();
+    scene.add(mesh, lamp());
+    mesh.material = lacquered.materialFrom(lacquer, {}, mesh);
+    const before = colours(scene, camera(), 1);
+    const refused = (run) => {
+      try {
+        run();
+        return 'taken';
+      } catch (error) {
+        return String(error);
+      }
+    };
+    const wrong = { base_color_factor: [0.5, 1] };
+    const texts = [
+      refused(() => mesh.material.set(wrong)),
+      refused(() => mesh.material.set({ roughness_factor: NaN })),
+      refused(() => mesh.material.setTexture('coat_texture', null)),
+      refused(() => lacquered.setEnvironment(scene, new THREE.Texture())),
+      refused(() => lacquered.environmentOf(lacquer, undefined)),
+      refused(() => lacquered.materialFrom(lacquer, {}, mesh, { options: { template: 'bsdf' } })),
+      refused(() => lacquered.materialFrom(lacquer, {}, mesh, { options: { template: 'forward_clustered' } })),
+      refused(() => lacquered.materialFrom(lacquer, {}, mesh, { options: { template: 'depth' } })),
+    ];
+    const after = colours(scene, camera(), 1);
+    mesh.material.set({ base_color_factor: new Float32Array([0, 0, 0, 1]) });
+    return { texts, same: String(before) === String(after), dark: colours(scene, camera(), 1)[0] < before[0] / 2 };
+  });
+  const expected = [/2 numbers/, /NaN is no number/, /reads no texture coat_texture/, /no environment/, /Radiance picture/, /not bsdf/, /not forward_clustered/, /not depth/];
+  expected.forEach((text, i) => assert.match(said.texts[i], text));
+  assert.ok(said.same && said.dark);
+});
+
+test('colours of vertices are drawn, also where three.js declares them', async () => {
+  const at = await inPage(() => {
+    const mesh = quad();
+    mesh.geometry.setAttribute('color', new THREE.Float32BufferAttribute([1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0], 3));
+    const scene = new THREE.Scene();
+    scene.add(mesh, lamp());
+    mesh.material = lacquered.materialFrom(lacquer, { pbrMetallicRoughness: { metallicFactor: 0 } }, mesh);
+    const plain = colours(scene, camera(), 1);
+    mesh.material = mesh.material.clone();
+    mesh.material.vertexColors = true;
+    return { plain, declared: colours(scene, camera(), 1) };
+  });
+  assert.ok(at.plain[0] > 2 * at.plain[1], `${at.plain}`);
+  assert.deepEqual(at.declared, at.plain);
 });
 
 /** A file by GLTFLoader with the plugin, drawn: what has become of its materials. */

@@ -181,6 +181,12 @@ ProceduralsOut::Written ProceduralsOut::ofGroup(const graph::Graph& patterns, st
   node.id = kInstance;
   node.type = group;
   node.group = true;
+  // Definitions that use each other twice double with each: what is too much is not written out.
+  for (Diagnostic& one : graph::check(graph, *schema_.library)) {
+    if (one.code != "graph-too-large" && one.code != "groups-too-deep") continue;
+    said_.push_back(std::move(one));
+    return {};
+  }
   graph::FlatOutputs told;
   graph = graph::flattened(std::move(graph), *schema_.library, &told);
   graph::Outputs outputs = told.at(std::string(kInstance));

@@ -19,11 +19,13 @@ interface Behind {
 const pictures = new WeakMap<WebGLRenderer, Behind>();
 
 function draw(renderer: WebGLRenderer, scene: Scene, camera: Camera, target: WebGLRenderTarget): void {
-  const hidden: Object3D[] = [];
-  scene.traverseVisible((object) => looksThrough(object) && hidden.push(object));
+  // What hangs below them stays: an object alone is in no layer.
+  const hidden: { object: Object3D; mask: number }[] = [];
+  scene.traverseVisible((object) => looksThrough(object) && hidden.push({ object, mask: object.layers.mask }));
   const { toneMapping, autoClear, xr, shadowMap } = renderer;
-  const before = { target: renderer.getRenderTarget(), xr: xr.enabled, shadows: shadowMap.autoUpdate };
-  for (const object of hidden) object.visible = false;
+  const before = { target: renderer.getRenderTarget(), face: renderer.getActiveCubeFace(), level: renderer.getActiveMipmapLevel() };
+  const [eyes, shadows] = [xr.enabled, shadowMap.autoUpdate];
+  for (const { object } of hidden) object.layers.mask = 0;
   renderer.toneMapping = NoToneMapping;
   renderer.autoClear = true;
   xr.enabled = false; // the camera is one eye's already
@@ -32,11 +34,11 @@ function draw(renderer: WebGLRenderer, scene: Scene, camera: Camera, target: Web
   try {
     renderer.render(scene, camera);
   } finally {
-    renderer.setRenderTarget(before.target);
+    renderer.setRenderTarget(before.target, before.face, before.level);
     Object.assign(renderer, { toneMapping, autoClear });
-    xr.enabled = before.xr;
-    shadowMap.autoUpdate = before.shadows;
-    for (const object of hidden) object.visible = true;
+    xr.enabled = eyes;
+    shadowMap.autoUpdate = shadows;
+    for (const { object, mask } of hidden) object.layers.mask = mask;
   }
 }
 
@@ -53,7 +55,8 @@ export function sceneBehind(renderer: WebGLRenderer, scene: Scene, camera: Camer
   const { target } = behind;
   const frame = renderer.info.render.frame;
   if (behind.frame !== frame || behind.camera !== camera) {
-    const size = renderer.getDrawingBufferSize(new Vector2());
+    const into = renderer.getRenderTarget();
+    const size = into ? new Vector2(into.width, into.height) : renderer.getDrawingBufferSize(new Vector2());
     target.setSize(size.x, size.y);
     draw(renderer, scene, camera, target);
     // Drawing it was a frame, too.

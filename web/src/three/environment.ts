@@ -63,14 +63,15 @@ export function tablesOf(lacquer: Lacquer): Record<string, Texture> {
   return made;
 }
 
-/** From a picture of the surroundings, Radiance HDR, or a texture that HDRLoader made of one: filtered on the processor, which
- * takes a second or more. `form.size` and `form.samples` trade time for detail. */
+/** From a picture of the surroundings, Radiance HDR, or a texture that HDRLoader made of one: filtered on the processor, for
+ * seconds, in which the page waits. `form.size` and `form.samples` trade time for detail. */
 export function environmentOf(
   lacquer: Lacquer,
-  picture: Uint8Array | Texture,
-  form: EnvironmentForm = { size: 128, samples: 256 },
+  picture: Uint8Array | ArrayBuffer | Texture,
+  form: EnvironmentForm = { size: 64, samples: 64 },
 ): Environment {
-  const bytes = picture instanceof Uint8Array ? picture : radianceOf(picture);
+  const file = picture instanceof ArrayBuffer ? new Uint8Array(picture) : picture;
+  const bytes = file instanceof Uint8Array ? file : radianceOf(file);
   const { files, environment_max_lod } = lacquer.environment(bytes, 'environment.hdr', { ...form, dds: false, shared_exponents: false });
   const textures: Record<string, Texture> = {};
   for (const slot of ['environment_specular', 'environment_irradiance', 'environment_charlie']) {
@@ -85,10 +86,10 @@ export function environmentOf(
 
 /** The floats of an equirectangular texture as a picture in Radiance HDR. */
 function radianceOf(texture: Texture): Uint8Array {
-  const { data, width, height } = (texture.image ?? {}) as { data?: ArrayLike<number>; width: number; height: number };
-  const half = texture.type === HalfFloatType;
+  const { data, width, height } = (texture?.image ?? {}) as { data?: ArrayLike<number>; width: number; height: number };
+  const half = texture?.type === HalfFloatType;
   if (!data || data.length !== 4 * width * height || (!half && texture.type !== FloatType))
-    throw new TypeError('the environment is no equirectangular texture of RGBA floats, such as HDRLoader makes');
+    throw new TypeError('an environment is the bytes of a Radiance picture, or an equirectangular texture of RGBA floats as HDRLoader makes it');
   const head = new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
   const bytes = new Uint8Array(head.length + 4 * width * height);
   bytes.set(head);
@@ -128,6 +129,7 @@ const environments = new WeakMap<Scene, Environment>();
 /** Lights all materials of a scene that have no environment of their own. The scene's `environmentIntensity` and
  * `environmentRotation` hold for it; with null it has none any more. */
 export function setEnvironment(scene: Scene, environment: Environment | null): void {
+  if (environment && !environment.textures) throw new TypeError('this is no environment: environmentOf() makes one of a picture');
   if (environment) environments.set(scene, environment);
   else environments.delete(scene);
 }

@@ -52,7 +52,7 @@ interface Seen {
   frame: number;
   lights: Light[];
 }
-const seen = new WeakMap<Scene, Seen>();
+const seen = new WeakMap<WebGLRenderer, WeakMap<Scene, Seen>>();
 /** What the template forward_area has beside, of a light that is a point. */
 const kPoint = { area_x: [0, 0, 0], area_y: [0, 0, 0], area_radiance: [0, 0, 0], disk: 0 };
 const kIdle = { ...kPoint, ...lightValues({ type: 'point', intensity: 0 }) };
@@ -68,12 +68,14 @@ function visible(from: Object3D, camera: Camera, lights: Light[]): void {
  * template has lights that have an area. */
 export function lightsOf(renderer: WebGLRenderer, scene: Scene, camera: Camera, size: number, areas: boolean): Lights {
   const { frame } = renderer.info.render;
-  let known = seen.get(scene);
+  const scenes = seen.get(renderer) ?? new WeakMap<Scene, Seen>();
+  seen.set(renderer, scenes);
+  let known = scenes.get(scene);
   const most = known?.lights.length ?? 0;
   if (known?.frame !== frame) {
     known = { frame, lights: [] };
     visible(scene, camera, known.lights);
-    seen.set(scene, known);
+    scenes.set(scene, known);
   }
   const lights = known.lights.map((light) => lightOf(light, areas)).filter((light) => light !== null);
   if (lights.length > size && most <= size) console.warn(`lacquer: the scene has ${lights.length} lights, of which the first ${size} are drawn`);

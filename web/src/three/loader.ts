@@ -1,8 +1,8 @@
 // A plugin of three.js's GLTFLoader: the meshes of a file get Lacquer's materials.
-import { MeshBasicMaterial, SRGBColorSpace, TextureLoader, type Group, type Material, type Mesh, type Object3D, type Texture } from 'three';
+import { MeshBasicMaterial, TextureLoader, type Group, type Material, type Mesh, type Object3D, type Texture } from 'three';
 import type { Lacquer, Scene as LacquerScene } from '../index.js';
 import type { GraphTexture, Message, Options } from '../types.js';
-import { attributesOf, LacquerMaterial, withStates } from './material.js';
+import { attributesOf, inSpace, LacquerMaterial, withStates } from './material.js';
 
 /** What the plugin uses of GLTFLoader's parser. */
 interface Parser {
@@ -86,7 +86,9 @@ export class LacquerPlugin {
     return this.parser.json.materials?.length ?? 0;
   }
 
-  private materialOf(index: number, mesh: Mesh): Promise<Material | null> {
+  /** A material of the file on a mesh of it, of variants for instance; once made, the same one again. Null, and a message, where no
+   * shader can be made. */
+  materialOf(index: number, mesh: Mesh): Promise<Material | null> {
     const key = [index, ...attributesOf(mesh)].join();
     const known = this.made.get(key);
     if (known) return known;
@@ -136,10 +138,6 @@ export class LacquerPlugin {
     const found = await load().catch(() => null); // the loader has told
     if (!found) return null;
     if (file) found.flipY = false;
-    if (!srgb || found.colorSpace === SRGBColorSpace) return found;
-    // The same picture may be read as numbers elsewhere.
-    const colors = found.clone();
-    colors.colorSpace = SRGBColorSpace;
-    return colors;
+    return inSpace(found, srgb);
   }
 }

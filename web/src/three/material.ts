@@ -1,7 +1,7 @@
 // A material of three.js whose shader is Lacquer's.
 import {
-  DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, Material, Matrix4, Quaternion, RGBAFormat, ShaderMaterial, UniformsLib,
-  UniformsUtils, Vector2, type BufferAttribute, type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh,
+  DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, Material, Matrix4, Quaternion, RGBAFormat, ShaderMaterial, SRGBColorSpace,
+  UniformsLib, UniformsUtils, Vector2, type BufferAttribute, type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh,
   type Texture, type WebGLRenderer,
 } from 'three';
 import type { Graph, Lacquer, Shader } from '../index.js';
@@ -64,9 +64,15 @@ interface Made {
   text: Record<'vertex' | 'fragment', string>;
 }
 
+/** Of blocks without a size: lists of any length. */
+const kLists = ['lights', 'list'];
+
 function make(graph: Graph, options: Options, messages: Message[]): Made {
   const shader = graph.generate({ ...options, targets: ['essl'] }, messages);
   const about = shader.interface;
+  const [color] = (about.outputs ?? []) as { type: string }[];
+  if (!shader.hasVertexStage || color?.type !== 'vec4' || about.uniforms.some(({ role, array }) => !array && kLists.includes(role)))
+    throw new TypeError(`three.js draws the templates forward, forward_area and what extends them, not ${about.template}`);
   const essl = { vertex: shader.text('essl', 'vertex'), fragment: shader.text('essl', 'fragment') };
   return {
     graph, shader, interface: about,
@@ -92,10 +98,14 @@ export class LacquerMaterial extends ShaderMaterial {
   /** The scene is drawn behind it once a frame, when it is seen through. */
   readonly looksThrough: boolean;
   private readonly made: Made;
-  private readonly values: Record<string, number | number[]> = {};
+  private values: Record<string, number[]> = {};
   private readonly objects = new WeakMap<Object3D, ObjectTextures>();
-  private readonly textures: ObjectTextures[] = [];
-  private drawn = { frame: -1, camera: null as Camera | null };
+  private readonly textures = new Set<ObjectTextures>();
+  private readonly gone = new FinalizationRegistry<ObjectTextures>((of) => {
+    of.dispose();
+    this.textures.delete(of);
+  });
+  private drawn = { renderer: null as WebGLRenderer | null, frame: -1, camera: null as Camera | null };
 
   constructor(
     private readonly lacquer: Lacquer,
@@ -116,23 +126,33 @@ export class LacquerMaterial extends ShaderMaterial {
     Object.assign(this.uniforms, UniformsUtils.clone(UniformsLib.fog));
     this.looksThrough = made.instances.has('SeeThrough');
     this.set({});
-    this.addEventListener('dispose', () => this.textures.splice(0).forEach((each) => each.dispose()));
+    this.addEventListener('dispose', () => this.textures.forEach((each) => each.dispose()));
   }
 
   /** The numbers that set() takes. */
   parameters(): Parameter[] {
     return this.made.graph.parameters();
   }
-  /** Gives parameters other values: no program is made for it. Throws where a name is no parameter's. */
-  set(values: Record<string, number | number[]>): void {
+  /** Gives parameters other values: no program is made for it. Throws, and changes nothing, where a name is no parameter's or a
+   * value no number. Values beyond a range are its ends. */
+  set(values: Record<string, number | ArrayLike<number>>): void {
     const known = new Set(this.made.graph.parameters().map(({ name }) => name));
-    const unknown = Object.keys(values).find((name) => !known.has(name));
-    if (unknown) throw new RangeError(`the material has no parameter ${unknown}; it has ${[...known].join(', ') || 'none'}`);
-    Object.assign(this.values, values);
+    const changed = { ...this.values };
+    for (const [name, value] of Object.entries(values)) {
+      if (!known.has(name)) throw new RangeError(`the material has no parameter ${name}; it has ${[...known].join(', ') || 'none'}`);
+      changed[name] = typeof value === 'number' ? [value] : Array.from(value ?? []);
+      if (!changed[name].length || !changed[name].every(Number.isFinite)) throw new TypeError(`${name}: ${value} is no number, and no array of them`);
+    }
     const block = this.made.interface.uniforms.find(({ block }) => block === 'Material');
+    const bytes = block ? this.made.shader.pack(changed) : new Uint8Array();
+    this.values = changed;
     if (!block) return;
-    const bytes = this.made.shader.pack(this.values);
     this.fill('Material', Object.fromEntries(block.fields.map((field) => [field.name, fieldOf(bytes, field)])));
+  }
+  /** The pictures in its slots, which dispose() leaves as they are. */
+  pictures(): Texture[] {
+    const slots = this.made.interface.textures.filter(({ role }) => role === 'material');
+    return slots.map(({ name }) => this.uniforms[name].value as Texture).filter((texture) => texture !== white && texture !== flat);
   }
   /** Another picture for a slot; null for a neutral one. */
   setTexture(slot: string, texture: Texture | null): void {
@@ -154,8 +174,8 @@ export class LacquerMaterial extends ShaderMaterial {
 
   override onBeforeRender(renderer: WebGLRenderer, scene: Scene, camera: Camera, _: BufferGeometry, object: Object3D): void {
     const { frame } = renderer.info.render;
-    if (this.drawn.frame !== frame || this.drawn.camera !== camera) {
-      this.drawn = { frame, camera };
+    if (this.drawn.renderer !== renderer || this.drawn.frame !== frame || this.drawn.camera !== camera) {
+      this.drawn = { renderer, frame, camera };
       this.fillFrame(renderer, scene, camera, frame);
     }
     this.fillObject(object as Mesh);
@@ -196,17 +216,18 @@ export class LacquerMaterial extends ShaderMaterial {
     if (!instances.has('Skin') && !instances.has('Morph')) return;
     let own = this.objects.get(mesh);
     if (!own) {
-      own = new ObjectTextures(mesh);
+      own = new ObjectTextures();
       this.objects.set(mesh, own);
-      this.textures.push(own);
+      this.textures.add(own);
+      this.gone.register(mesh, own);
     }
     if (instances.has('Skin')) {
-      this.uniforms.joint_matrices.value = own.skin();
+      this.uniforms.joint_matrices.value = own.skin(mesh as SkinnedMesh);
       this.fill('Skin', { joint_count: (mesh as SkinnedMesh).skeleton.bones.length, joint_scale: 1 });
     }
     if (instances.has('Morph')) {
-      this.uniforms.morph_deltas.value = own.morph();
-      this.fill('Morph', own.weights());
+      this.uniforms.morph_deltas.value = own.morph(mesh);
+      this.fill('Morph', own.weights(mesh));
     }
   }
 }
@@ -221,7 +242,6 @@ class ObjectTextures {
   private joints: DataTexture | null = null;
   private deltas: DataArrayTexture | null = null;
   private readonly size = new Vector2();
-  constructor(private readonly mesh: Mesh) {}
 
   dispose(): void {
     this.joints?.dispose();
@@ -230,8 +250,7 @@ class ObjectTextures {
   }
 
   /** A row for each joint: three rows of the matrix from the mesh to where three.js's `modelMatrix` begins. */
-  skin(): DataTexture {
-    const { skeleton, bindMatrix, bindMatrixInverse } = this.mesh as SkinnedMesh;
+  skin({ skeleton, bindMatrix, bindMatrixInverse }: SkinnedMesh): DataTexture {
     const count = skeleton.bones.length;
     this.joints ??= new DataTexture(new Float32Array(16 * count), 4, count, RGBAFormat, FloatType);
     const data = this.joints.image.data as Float32Array;
@@ -247,10 +266,10 @@ class ObjectTextures {
   }
 
   /** Of each target its differences of positions, normals and tangents. */
-  morph(): DataArrayTexture {
+  morph({ geometry }: Mesh): DataArrayTexture {
     if (this.deltas) return this.deltas;
-    const { attributes, morphTargetsRelative } = this.mesh.geometry;
-    const morphAttributes = this.mesh.geometry.morphAttributes as Record<string, BufferAttribute[] | undefined>;
+    const { attributes, morphTargetsRelative } = geometry;
+    const morphAttributes = geometry.morphAttributes as Record<string, BufferAttribute[] | undefined>;
     const vertices = attributes.position.count;
     this.size.set(Math.min(vertices, kRow), Math.ceil(vertices / kRow));
     const kinds = ['position', 'normal', 'tangent'];
@@ -275,8 +294,7 @@ class ObjectTextures {
   }
 
   /** Of the targets that count most. */
-  weights(): Values {
-    const influences = this.mesh.morphTargetInfluences ?? [];
+  weights({ morphTargetInfluences: influences = [] }: Mesh): Values {
     const most = influences.map((weight, target) => ({ weight, target }))
       .sort((a, b) => Math.abs(b.weight) - Math.abs(a.weight)).slice(0, kMostTargets);
     const padded = (pick: (of: { weight: number; target: number }) => number) =>
@@ -285,7 +303,8 @@ class ObjectTextures {
   }
 }
 
-/** The look of a glTF material (its JSON) on a mesh. `textures` are the file's, by the indices that the JSON has. */
+/** The look of a glTF material (its JSON) on a mesh. `textures` are the file's, by the indices that the JSON has, with glTF's
+ * `flipY`, false. */
 export function materialFrom(
   lacquer: Lacquer,
   json: object,
@@ -297,18 +316,27 @@ export function materialFrom(
   const scene = lacquer.scene(JSON.stringify(file), 'material.gltf', options, messages);
   try {
     const graph = scene.graph(0, options, attributesOf(mesh), messages);
-    const slots = Object.fromEntries(graph.textures().map(({ name, texture }) => [name, textures[texture] ?? null]));
+    const slots = Object.fromEntries(graph.textures().map(({ name, texture, srgb }) => [name, inSpace(textures[texture], srgb)]));
     return withStates(new LacquerMaterial(lacquer, graph, { textures: slots, options, messages }), json);
   } finally {
     scene.free();
   }
 }
 
+/** The texture with the colour space of its slot: the same picture may be read as numbers elsewhere. */
+export function inSpace(texture: Texture | null | undefined, srgb: boolean): Texture | null {
+  if (!texture || !srgb || texture.colorSpace === SRGBColorSpace) return texture ?? null;
+  const colors = texture.clone();
+  colors.colorSpace = SRGBColorSpace;
+  return colors;
+}
+
 /** What of a glTF material is no matter of its shader. */
-export function withStates<T extends Material>(material: T, json: { alphaMode?: string; doubleSided?: boolean; name?: string }): T {
+export function withStates<T extends Material>(material: T, json: { alphaMode?: string; doubleSided?: boolean; name?: string; extras?: object }): T {
   material.transparent = json.alphaMode === 'BLEND';
   material.depthWrite = json.alphaMode !== 'BLEND';
   if (json.doubleSided) material.side = DoubleSide;
   if (json.name) material.name = json.name;
+  if (json.extras) Object.assign(material.userData, json.extras);
   return material;
 }

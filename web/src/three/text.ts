@@ -47,12 +47,20 @@ class Rewriting {
       return `${type} ${variable};`;
     }
     const name = attributeName(semantic);
+    if (semantic === 'COLOR_0') return this.color(type, variable);
     const { under } = kAttributes[semantic] ?? {};
     this.fill.push(`${variable} = ${name};`);
     const declared = `in ${type} ${name};\n`;
     const once = under === '' ? '' : under ? `#ifndef ${under}\n${declared}#endif\n` : declared;
     return `${once}${type} ${variable};`;
   };
+
+  /** Which an application may have three.js declare by `vertexColors`. */
+  private color(type: string, variable: string): string {
+    const without = '#if defined(USE_COLOR) && !defined(USE_COLOR_ALPHA)';
+    this.fill.push(without, `${variable} = vec4(color, 1.0);`, '#else', `${variable} = color;`, '#endif');
+    return `#if !defined(USE_COLOR) && !defined(USE_COLOR_ALPHA)\nin ${type} color;\n#endif\n${type} ${variable};`;
+  }
 
   block = (_: string, block: string, members: string, instance: string | undefined): string => {
     if (!instance) return `uniform ${members.trim()}`; // an array of structs that stand before it
