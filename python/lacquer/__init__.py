@@ -658,7 +658,7 @@ def bake(output: Union[str, Path], file: Union[str, Path], materials: Sequence[s
 
 def _texels(size: int, most: int = 0xFFFFFFFF) -> int:
     texels = operator.index(size)
-    # What a uint32_t holds the library checks itself.
+    # The library checks the range of sizes that a uint32_t holds.
     if not 0 <= texels <= 0xFFFFFFFF:
         raise ValueError(f"{size} is no size: it must be from 0 to {most}")
     return texels

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "lacquer.h"
 #include "lacquer/exchange.h"
@@ -316,10 +317,9 @@ TEST(UnlitSurfaces, TakeVariants) {
   for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
 }
 
-/// A surface of a definition may stand behind its namespace.
-TEST(UnlitSurfaces, StandInNamespaces) {
-  Messages messages;
-  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39" namespace="q">
+/// A material whose surface is a definition of its own, which is a surface_unlit.
+std::string unlitByDefinition(std::string_view attributes, std::string_view node, std::string_view tint) {
+  return fmt::format(R"(<materialx version="1.39"{0}>
   <nodedef name="ND_srf" node="srf">
     <input name="tint" type="color3" value="1, 1, 1"/>
     <output name="out" type="surfaceshader"/>
@@ -330,9 +330,16 @@ TEST(UnlitSurfaces, StandInNamespaces) {
     </surface_unlit>
     <output name="out" type="surfaceshader" nodename="s"/>
   </nodegraph>
-  <q:srf name="s" type="surfaceshader"><input name="tint" type="color3" value="2, 3, 4"/></q:srf>
+  <{1} name="s" type="surfaceshader"><input name="tint" type="color3" value="{2}"/></{1}>
   <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
 </materialx>)",
+                     attributes, node, tint);
+}
+
+/// A surface of a definition may stand behind its namespace.
+TEST(UnlitSurfaces, StandInNamespaces) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(unlitByDefinition(" namespace=\"q\"", "q:srf", "2, 3, 4"),
                                         "unlit.mtlx", {}, messages);
   ASSERT_TRUE(messages.empty()) << messages[0].text;
   const auto color = evaluate(scene, 0, "[{}]", Engine::Double, {}, {}, messages);
@@ -344,21 +351,8 @@ TEST(UnlitSurfaces, StandInNamespaces) {
 /// A definition that is a surface_unlit is no closure for glTF.
 TEST(UnlitSurfaces, AreWrittenToGltfByTheirDefinition) {
   Messages messages;
-  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
-  <nodedef name="ND_srf" node="srf">
-    <input name="tint" type="color3" value="1, 1, 1"/>
-    <output name="out" type="surfaceshader"/>
-  </nodedef>
-  <nodegraph name="NG_srf" nodedef="ND_srf">
-    <surface_unlit name="s" type="surfaceshader">
-      <input name="emission_color" type="color3" interfacename="tint"/>
-    </surface_unlit>
-    <output name="out" type="surfaceshader" nodename="s"/>
-  </nodegraph>
-  <srf name="s" type="surfaceshader"><input name="tint" type="color3" value="0.25, 0.5, 0.75"/></srf>
-  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
-</materialx>)",
-                                        "unlit.mtlx", {}, messages);
+  const Scene scene =
+      Scene::fromMemory(unlitByDefinition("", "srf", "0.25, 0.5, 0.75"), "unlit.mtlx", {}, messages);
   const std::string gltf = toGltf(scene, {}, 4, {}, messages);
   EXPECT_TRUE(messages.empty()) << messages[0].text;
   EXPECT_NE(gltf.find("KHR_materials_unlit"), std::string::npos);

@@ -101,7 +101,7 @@ bool describesLight(const ir::Module& module, const EvalPoints& points) {
   });
 }
 
-/// What is known of the one light, by the options and by the points: the same for every engine.
+/// The kind of the one light, by the options and the points: the same for every engine.
 passes::LightFacts factsOfLight(const ir::Module& module, const EvalPoints& points, const Options& options) {
   const bool fixed = options.lights.mode == Lights::Mode::Fixed;
   Strings kinds;

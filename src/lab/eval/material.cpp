@@ -163,7 +163,7 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   return Loaded{std::move(*found), {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
 }
 
-/// What is wrong with an image whose name stands in a document, where it stands.
+/// The errors of an image, at the place of its name in the document.
 static Diagnostics inDocument(Diagnostics said, const graph::Texture& texture) {
   for (Diagnostic& one : said)
     if (texture.place.line > 0) one.place = texture.place;

@@ -8,8 +8,8 @@
 
 namespace lacquer::gltf {
 
-/// What is wrong with the lights of EXT_lights_ies in a file, and with the nodes that shine by them: what
-/// reading the file as a scene says of them, too.
+/// The errors and warnings of a file's lights of EXT_lights_ies and of the nodes that shine by them. They are
+/// those of reading the file as a scene.
 Diagnostics checkIes(const Json& root, const std::string& file);
 
 }  // namespace lacquer::gltf

@@ -75,8 +75,8 @@ Texture readTexture(const Json& root, const Json& texture, const Path& path, Rep
 /// Says what is wrong with a sampler, once for all textures that have it.
 void checkSampler(const Json& sampler, const Path& path, Report& report);
 
-/// What a light's type comes to, {"type": "point"}: "unknown" where it has none of `types`, which is
-/// reported.
+/// A light's type as the scene keeps it, {"type": "point"}. A type that is none of `types` is reported, and
+/// kept as "unknown".
 Json readLightType(Report& report, const Json& light, const Path& path,
                    std::span<const std::string_view> types);
 

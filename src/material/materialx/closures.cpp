@@ -186,7 +186,7 @@ Alpha Patterns::alphaOf(const Element& surface) {
   return inner->category == "surface" && !isSaid(*inner, "opacity") ? Alpha::Opaque : Alpha::Blend;
 }
 
-/// What is wrong with the type of an input that a definition has as a port.
+/// The error of an input whose type is not its port's; nothing where the types agree.
 std::optional<Diagnostic> Patterns::wrongType(const Element& input, const Element& port) {
   const std::string_view type = input.get("type");
   if (type.empty() || typeOf(type) == typeOf(port.get("type"))) return std::nullopt;

@@ -197,7 +197,7 @@ private:
   std::string_view endsOf(Scope& scope, const Element& element);
   const Element* text(Scope& within, const Element& input);
   const Element* propertyOf(const Element& node, std::string_view name);
-  /// What the instances of a definition are given that makes another nodegraph.
+  /// Texts and attributes of files that instances give a definition. Each choice of them makes a nodegraph.
   struct Given {
     struct OfFile {
       std::string_view input, attribute, value;

@@ -347,8 +347,8 @@ std::string_view Patterns::choice(Scope& scope, const Element& element, std::str
   return value;
 }
 
-/// What samples the file of a body's input: the first node there or in the definition that it is given to, or
-/// the input itself where none does.
+/// The node that samples the file of a body's input: the first one there, or in the definition that the input
+/// goes to. Without such a node the input itself.
 Patterns::Sampling Patterns::samplingOf(Scope& body, const Element& input) {
   for (const Element& node : body.owner_->children) {
     const auto takes = std::find_if(node.children.begin(), node.children.end(), [&](const Element& one) {
@@ -440,8 +440,8 @@ std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const El
   return Source{graph::TextureRef{it->second}, {}};
 }
 
-/// What a name of a geometric property is: by a `geompropdef` of the documents, or one of MaterialX's own.
-/// Nothing where it is neither of these, or an attribute of its own.
+/// The geometric property of a name, by a `geompropdef` of the documents or MaterialX's own. Nothing where
+/// the name is neither, or an attribute of the application.
 std::optional<Patterns::OfGeometry> Patterns::geometryOf(std::string_view name) const {
   constexpr std::pair<std::string_view, std::string_view> kNodes[] = {
       {"P", "position"}, {"N", "normal"}, {"T", "tangent"}, {"B", "bitangent"}, {"V", "viewdirection"}};
@@ -481,7 +481,7 @@ const Element* Patterns::propertyNamed(std::string_view name) const {
   return found == geomprops_.end() ? nullptr : found->second;
 }
 
-/// What an input has of the geometry where nothing gives it. Nothing, and an error, for an unknown name.
+/// The geometric property that is an input's default. Nothing, and an error, for an unknown name.
 std::optional<Patterns::OfGeometry> Patterns::ofGeometry(const Element& input) {
   const std::string_view name = input.get("defaultgeomprop");
   if (name.empty()) return std::nullopt;

@@ -50,7 +50,7 @@ bool isReference(std::string_view text) {
   return error == std::errc{} && end == digits.data() + digits.size() && isXmlCharacter(number);
 }
 
-/// What is wrong with a comment that begins there, or with a declaration, which stands first alone.
+/// The error of a comment that begins there, or of a declaration that is not the first of the text.
 std::optional<Malformed> malformedBeside(std::string_view text, size_t at) {
   constexpr std::string_view kComment = "<!--", kDeclaration = "<?xml";
   const std::string_view rest = text.substr(at);
