@@ -10,7 +10,7 @@
 #include "processes.h"
 #include "random_gltf.h"
 
-namespace lacquer::test {
+namespace lacquer::test::build_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -404,4 +404,4 @@ TEST_F(Build, ManyMaterialsOfFewKinds) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::build_test

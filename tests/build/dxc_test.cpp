@@ -8,7 +8,7 @@
 
 #include "processes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::dxc_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST_F(Dxc, AnUpgradeThatRefusesTheShaderIsHeard) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::dxc_test

@@ -9,7 +9,7 @@
 #include "random_gltf.h"
 #include "sandbox.h"
 
-namespace lacquer::test {
+namespace lacquer::test::farm_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -294,4 +294,4 @@ TEST_F(Farm, NamesGoThroughNoShell) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::farm_test

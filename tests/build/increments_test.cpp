@@ -6,7 +6,7 @@
 #include "processes.h"
 #include "random_gltf.h"
 
-namespace lacquer::test {
+namespace lacquer::test::increments_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ node varnished(
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::increments_test

@@ -9,7 +9,7 @@
 #include "setting/option_key.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::key_test {
 namespace {
 
 struct Row {
@@ -164,4 +164,4 @@ TEST(Keys, ShadersOfOneIdentifierAreTold) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::key_test

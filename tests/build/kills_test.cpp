@@ -10,7 +10,7 @@
 #include "golden/random_material.h"
 #include "processes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::kills_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ TEST_F(RandomMaterials, PlannedAndMerged) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::kills_test

@@ -9,7 +9,7 @@
 #include "processes.h"
 #include "random_gltf.h"
 
-namespace lacquer::test {
+namespace lacquer::test::programs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -323,4 +323,4 @@ TEST_F(ProgramsRun, PipelinesHaveTheirConstants) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::programs_test

@@ -8,7 +8,7 @@
 
 #include "processes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::receipt_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -275,4 +275,4 @@ TEST_F(Receipt, OtherInputsLookAtTheFilesOfEachShader) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::receipt_test

@@ -6,7 +6,7 @@
 
 #include "processes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::tint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,4 +79,4 @@ TEST_F(TintCache, OneThatRefusesTheShaderIsHeardEachTime) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::tint_test

@@ -12,7 +12,7 @@
 
 extern "C" size_t fragmentBytesFromC(const char* path, const char* name);
 
-namespace lacquer::test {
+namespace lacquer::test::calls_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -348,4 +348,4 @@ TEST_F(CCalls, theLibraryTellsItsNodesAndTables) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::calls_test

@@ -6,7 +6,7 @@
 
 #include "handle.h"
 
-namespace lacquer::test {
+namespace lacquer::test::contract_test {
 namespace {
 
 using nlohmann::json;
@@ -246,4 +246,4 @@ TEST(CContractValues, StructuresOfGraphs) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::contract_test

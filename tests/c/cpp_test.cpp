@@ -5,7 +5,7 @@
 
 #include "lacquer.h"
 
-namespace lacquer::test {
+namespace lacquer::test::cpp_test {
 namespace {
 
 template <class Function>
@@ -56,4 +56,4 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::cpp_test

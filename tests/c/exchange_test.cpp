@@ -10,7 +10,7 @@
 #include "lacquer/exchange.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::exchange_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -224,4 +224,4 @@ TEST(CEnvironments, WrongOnesAreSaid) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::exchange_test

@@ -9,7 +9,7 @@
 #include "lacquer.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::findings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,4 +220,4 @@ TEST_F(Findings, ofSheetsAndLevels) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::findings_test

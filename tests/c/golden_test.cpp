@@ -10,7 +10,7 @@
 #include "lacquer.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::golden_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST(CGolden, everyFileOfARunComesThroughTheInterface) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::golden_test

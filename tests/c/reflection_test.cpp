@@ -10,7 +10,7 @@
 #include "lacquer.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::reflection_test {
 namespace {
 
 using nlohmann::json;
@@ -282,4 +282,4 @@ TEST(Reflection, AnEarlierCallerIsNotGivenMoreThanItKnows) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::reflection_test

@@ -10,7 +10,7 @@
 #include "handle.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::session_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -224,4 +224,4 @@ TEST_F(CSession, packsIntoBlocksThatAreLargeEnough) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::session_test

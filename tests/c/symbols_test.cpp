@@ -11,7 +11,7 @@
 
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::symbols_test {
 namespace {
 
 std::set<std::string> exported() {
@@ -91,4 +91,4 @@ TEST(Symbols, everyFunctionOfTheCppHeadersIsListed) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::symbols_test

@@ -3,7 +3,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::animation_test {
 namespace {
 
 using nlohmann::json;
@@ -77,4 +77,4 @@ INSTANTIATE_TEST_SUITE_P(Params, AnimatedNumbers, testing::Values("uniform", "ba
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::animation_test

@@ -8,7 +8,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::contract_test {
 namespace {
 
 using nlohmann::json;
@@ -410,4 +410,4 @@ TEST(Schema, EveryManifestIsValid) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::contract_test

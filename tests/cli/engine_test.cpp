@@ -10,7 +10,7 @@
 #include "command.h"
 #include "vulkan/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::engine_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -425,4 +425,4 @@ TEST(Templates, LoopsOfTheWebEndWithTheirArrays) {
   EXPECT_GT(loops, 8U);
 }
 
-}  // namespace lacquer::test
+}  // namespace lacquer::test::engine_test

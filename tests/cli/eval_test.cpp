@@ -9,7 +9,7 @@
 #include "command.h"
 #include "vulkan/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::eval_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -110,4 +110,4 @@ TEST(EvalVulkan, wrongUsageIsTwo) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::eval_test

@@ -13,7 +13,7 @@
 #include "lacquer/exchange.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::exchange_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -739,4 +739,4 @@ TEST(Convert, measuresAndShows) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::exchange_test

@@ -3,7 +3,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::flags_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -110,4 +110,4 @@ TEST(Flags, theyMeanTheSameWhereColorsAreComputed) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::flags_test

@@ -4,7 +4,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::graph_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -417,4 +417,4 @@ TEST_F(GraphFiles, areNoDocuments) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::graph_test

@@ -8,7 +8,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::hostile_bounds_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -252,4 +252,4 @@ TEST(Outputs, leaveNothingBesideThemWhenKilled) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::hostile_bounds_test

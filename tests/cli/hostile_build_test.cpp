@@ -12,7 +12,7 @@
 #include "setting/option_key.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::hostile_build_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -432,4 +432,4 @@ TEST(Numbers, areDecimal) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::hostile_build_test

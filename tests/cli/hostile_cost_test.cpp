@@ -8,7 +8,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::hostile_cost_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -227,4 +227,4 @@ TEST(CostPaths, areNotEmpty) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::hostile_cost_test

@@ -11,7 +11,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -608,4 +608,4 @@ TEST(Hostile, smallStacksAreTold) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::hostile_test

@@ -3,7 +3,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::image_source_test {
 namespace {
 
 using nlohmann::json;
@@ -127,4 +127,4 @@ TEST_F(ImageSource, TheManifestHasTheChannels) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::image_source_test

@@ -8,7 +8,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -302,4 +302,4 @@ TEST(Inputs, graphsThatMayLeaveARange) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::input_test

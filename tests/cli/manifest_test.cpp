@@ -5,7 +5,7 @@
 #include "lacquer.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::manifest_test {
 namespace {
 
 using nlohmann::json;
@@ -214,4 +214,4 @@ TEST(ManifestBytes, libraryWritesWhatTheProgramWrites) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::manifest_test

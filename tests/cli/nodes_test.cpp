@@ -7,7 +7,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::nodes_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -315,4 +315,4 @@ TEST(Nodes, HaveLabelsWhereNamesSayLittle) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::nodes_test

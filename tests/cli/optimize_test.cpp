@@ -5,7 +5,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::optimize_test {
 namespace {
 
 using nlohmann::json;
@@ -144,4 +144,4 @@ TEST(Tune, TakesOneVendorsNode) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::optimize_test

@@ -5,7 +5,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::output_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ TEST(Output, fullDeviceIsAnError) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::output_test

@@ -6,7 +6,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::own_nodes_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -368,4 +368,4 @@ TEST(OwnNodes, AttributesOfInstancesAreNamed) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::own_nodes_test

@@ -5,7 +5,7 @@
 #include "command.h"
 #include "lacquer.h"
 
-namespace lacquer::test {
+namespace lacquer::test::usage_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -412,4 +412,4 @@ TEST(Usage, misspeltTemplatesAndTermsAreErrors) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::usage_test

@@ -3,7 +3,7 @@
 
 #include "command.h"
 
-namespace lacquer::test {
+namespace lacquer::test::view_test {
 namespace {
 
 using nlohmann::json;
@@ -113,4 +113,4 @@ TEST_F(View, withoutThePageOrTheFileItSaysSo) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::view_test

@@ -11,7 +11,7 @@
 #include "command.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::webgpu_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -274,4 +274,4 @@ TEST_F(Metal, Text) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::webgpu_test

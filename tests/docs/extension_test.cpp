@@ -9,7 +9,7 @@
 #include "docs/page.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::extension_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ TEST_F(Tutorial, WithoutTheFolderItIsIgnored) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::extension_test

@@ -12,12 +12,10 @@
 
 namespace lacquer::test {
 
-using Json = nlohmann::json;
-
-static std::string lineTypes(const Json& line) {
+static std::string lineTypes(const nlohmann::json& line) {
   if (line.contains("type")) return line["type"].get<std::string>();
   std::string types;
-  for (const Json& output : line.value("outputs", Json::array()))
+  for (const nlohmann::json& output : line.value("outputs", nlohmann::json::array()))
     types += fmt::format("{}{} `.{}`", types.empty() ? "" : ", ", output["type"].get<std::string>(),
                          output["name"].get<std::string>());
   return types;
@@ -25,13 +23,13 @@ static std::string lineTypes(const Json& line) {
 
 std::string linesTable() {
   Messages messages;
-  const Json all = Json::parse(nodesJson({}, messages));
+  const nlohmann::json all = nlohmann::json::parse(nodesJson({}, messages));
   std::map<std::string, std::string> docs;
-  for (const Json& part : all["parts"]) docs[part["name"]] = part["doc"];
+  for (const nlohmann::json& part : all["parts"]) docs[part["name"]] = part["doc"];
   std::vector<std::string> order;
   std::map<std::string, std::string> tables;
   std::string below;
-  for (const Json& line : all["lines"]) {
+  for (const nlohmann::json& line : all["lines"]) {
     if (line.contains("below")) {
       below += fmt::format("| `{}` | {} |\n", line["name"].get<std::string>(), lineTypes(line));
       continue;

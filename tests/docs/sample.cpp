@@ -17,7 +17,6 @@ namespace {
 
 using lang::PropertyDecl;
 using material::Kind;
-using material::Row;
 
 /// A value that is not the default; textures count up, and take a UV set each in turn, so that all are used.
 Json valueOf(const PropertyDecl& decl, int& textures) {

@@ -5,7 +5,7 @@
 #include "graph/sample.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::cases_test {
 namespace {
 
 void checkCase(const std::filesystem::path& file) {
@@ -41,4 +41,4 @@ const bool kRegistered = registerFiles("GraphCase", sourceFolder() / "tests/grap
 TEST(GraphCases, areRegistered) { EXPECT_TRUE(kRegistered); }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::cases_test

@@ -6,7 +6,7 @@
 
 #include "graph/sample.h"
 
-namespace lacquer::test {
+namespace lacquer::test::check_test {
 namespace {
 
 using graph::Graph;
@@ -113,4 +113,4 @@ TEST(GraphCheck, aFloodOfErrorsIsCutAndCheap) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::check_test

@@ -4,7 +4,7 @@
 #include "graph/sample.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::doc_test {
 namespace {
 
 TEST(GraphDoc, examplesAreGraphs) {
@@ -26,4 +26,4 @@ TEST(GraphDoc, examplesAreGraphs) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::doc_test

@@ -4,7 +4,7 @@
 #include "graph/sample.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::dot_test {
 namespace {
 
 void drawCase(const std::filesystem::path& file) {
@@ -32,4 +32,4 @@ TEST(GraphDots, areOnTheirLines) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::dot_test

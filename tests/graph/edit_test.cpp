@@ -13,7 +13,7 @@
 #include "json/json.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::edit_test {
 namespace {
 
 using graph::Graph;
@@ -289,4 +289,4 @@ TEST(GraphEdit, ofWrongGraphsIsTakenBack) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::edit_test

@@ -3,7 +3,7 @@
 
 #include "graph/sample.h"
 
-namespace lacquer::test {
+namespace lacquer::test::group_test {
 namespace {
 
 using graph::Graph;
@@ -128,4 +128,4 @@ TEST(GraphGroups, keepWhatToolsKeepInThemWithinALimit) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::group_test

@@ -6,7 +6,7 @@
 #include "graph/random_graph.h"
 #include "graph/sample.h"
 
-namespace lacquer::test {
+namespace lacquer::test::json_test {
 namespace {
 
 using graph::Graph;
@@ -166,4 +166,4 @@ TEST(GraphJson, wrongSourcesAlone) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::json_test

@@ -6,7 +6,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::test {
+namespace lacquer::test::materials_test {
 namespace {
 
 void buildAndCheck(const material::Material& material, const gltf::VertexAttributes& attributes,
@@ -49,4 +49,4 @@ const bool kRegistered =
 TEST(GraphMaterials, areRegistered) { EXPECT_TRUE(kRegistered); }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::materials_test

@@ -7,7 +7,7 @@
 
 #include "graph/sample.h"
 
-namespace lacquer::test {
+namespace lacquer::test::order_test {
 namespace {
 
 using graph::Edge;
@@ -127,4 +127,4 @@ TEST(GraphOrder, longChainsBecomeCodeWithoutAStack) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::order_test

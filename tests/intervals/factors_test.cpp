@@ -4,7 +4,7 @@
 #include "ir/module.h"
 #include "passes/passes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::factors_test {
 namespace {
 
 using ir::Op;
@@ -81,4 +81,4 @@ TEST_F(Factors, TheMagnitudeOfAProductThatIsThereAnywayStays) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::factors_test

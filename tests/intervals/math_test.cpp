@@ -12,7 +12,7 @@
 #include "analysis/intervals.h"
 #include "ir/fold.h"
 
-namespace lacquer::test {
+namespace lacquer::test::math_test {
 namespace {
 
 using analysis::Arithmetic;
@@ -246,4 +246,4 @@ TEST(IntervalMath, KnowsWhereNumbersEnd) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::math_test

@@ -5,7 +5,7 @@
 #include "lang/library.h"
 #include "prove/nodes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::nodes_test {
 namespace {
 
 const lang::Library& library() {
@@ -85,4 +85,4 @@ TEST(IntervalNodes, WhatTakesMoreThanOneEvaluationIsProved) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::nodes_test

@@ -12,7 +12,7 @@
 #include "lang/library.h"
 #include "prove/nodes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::points_test {
 namespace {
 
 using analysis::Intervals;
@@ -156,4 +156,4 @@ TEST(IntervalPoints, HoldFloatAndDoubleOfEveryNode) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::points_test

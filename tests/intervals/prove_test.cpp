@@ -8,7 +8,7 @@
 
 #include "lang/builtins.h"
 
-namespace lacquer::test {
+namespace lacquer::test::prove_test {
 namespace {
 
 using ir::Op;
@@ -164,4 +164,4 @@ TEST_F(Prove, OutputsAreReported) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::prove_test

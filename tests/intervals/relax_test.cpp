@@ -17,7 +17,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::test {
+namespace lacquer::test::relax_test {
 namespace {
 
 using analysis::Error;
@@ -334,4 +334,4 @@ TEST(RelaxedMaterials, KeepToTheBound) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::relax_test

@@ -12,7 +12,7 @@
 #include "lacquer/generate.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::relax_texts_test {
 namespace {
 
 /// The relaxed operations of a module on scalars, by kind. What moves numbers is none.
@@ -177,4 +177,4 @@ TEST(RelaxedTexts, AShareThatIsNoneIsRefused) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::relax_texts_test

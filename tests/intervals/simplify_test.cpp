@@ -4,7 +4,7 @@
 #include "ir/module.h"
 #include "passes/passes.h"
 
-namespace lacquer::test {
+namespace lacquer::test::simplify_test {
 namespace {
 
 using ir::Op;
@@ -139,4 +139,4 @@ TEST_F(Ranges, WhatIsAlwaysDroppedHasNoColour) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::simplify_test

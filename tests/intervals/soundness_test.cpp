@@ -16,7 +16,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::test {
+namespace lacquer::test::soundness_test {
 namespace {
 
 using analysis::Intervals;
@@ -369,4 +369,4 @@ TEST(IntervalSoundness, SimplifiedModulesGiveTheSame) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::soundness_test

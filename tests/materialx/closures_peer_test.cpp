@@ -18,7 +18,7 @@
 #include "support/cases.h"
 #include "vulkan/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::closures_peer_test {
 namespace {
 
 constexpr size_t kPoints = 300;
@@ -503,4 +503,4 @@ TEST(Translations, areAsFarOffAsTheManifestSays) {
 TEST_P(ClosuresPeer, drawsAlike) { compare(GetParam(), std::string_view(GetParam()).size() * 7 + 3); }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::closures_peer_test

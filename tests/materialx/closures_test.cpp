@@ -11,7 +11,7 @@
 #include "materialx/closures_reference.h"
 #include "patterns/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::closures_test {
 namespace {
 
 using closures::Bsdf;
@@ -345,4 +345,4 @@ TEST(Closures, combinators) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::closures_test

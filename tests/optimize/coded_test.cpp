@@ -6,7 +6,7 @@
 #include "optimize/exact.h"
 #include "optimize/rules.h"
 
-namespace lacquer::test {
+namespace lacquer::test::coded_test {
 namespace {
 
 using ir::Op;
@@ -204,4 +204,4 @@ TEST(CodedRules, WhatIsTheSameForAllLightsLeavesTheirSum) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::coded_test

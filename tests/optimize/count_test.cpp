@@ -3,7 +3,7 @@
 
 #include "optimize/cost.h"
 
-namespace lacquer::test {
+namespace lacquer::test::count_test {
 namespace {
 
 using ir::Op;
@@ -29,4 +29,4 @@ TEST(Counts, AMaterialsSignIsNoWayToAProduct) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::count_test

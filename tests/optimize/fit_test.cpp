@@ -7,7 +7,7 @@
 #include "optimize/exact.h"
 #include "optimize/fit.h"
 
-namespace lacquer::test {
+namespace lacquer::test::fit_test {
 namespace {
 
 using ir::Op;
@@ -172,4 +172,4 @@ TEST(Fits, AreTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::fit_test

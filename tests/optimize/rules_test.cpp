@@ -9,7 +9,7 @@
 #include "optimize/exact.h"
 #include "optimize/rules.h"
 
-namespace lacquer::test {
+namespace lacquer::test::rules_test {
 namespace {
 
 using ir::Op;
@@ -204,4 +204,4 @@ TEST(Rules, NamesAreTold) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::rules_test

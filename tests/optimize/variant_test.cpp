@@ -11,7 +11,7 @@
 #include "optimize/exact.h"
 #include "optimize/optimize.h"
 
-namespace lacquer::test {
+namespace lacquer::test::variant_test {
 namespace {
 
 using ir::Op;
@@ -142,4 +142,4 @@ TEST(Variants, AreOffByNoMoreThanTheySay) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::variant_test

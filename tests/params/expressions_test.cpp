@@ -11,7 +11,7 @@
 #include "lacquer.h"
 #include "support/answers.h"
 
-namespace lacquer::test {
+namespace lacquer::test::expressions_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -126,4 +126,4 @@ TEST(Expressions, OfTheExamplesAreGlsl) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::expressions_test

@@ -13,7 +13,7 @@
 #include "support/cases.h"
 #include "targets/target.h"
 
-namespace lacquer::test {
+namespace lacquer::test::module_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -277,4 +277,4 @@ TEST(Module, TextsOfAnExample) {
   expectFile(folder / "coat.header", shader.headerText());
 }
 
-}  // namespace lacquer::test
+}  // namespace lacquer::test::module_test

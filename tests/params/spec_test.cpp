@@ -22,7 +22,7 @@
 #include "targets/legalize.h"
 #include "targets/target.h"
 
-namespace lacquer::test {
+namespace lacquer::test::spec_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -191,4 +191,4 @@ TEST(Spec, OtherTargetsHaveNone) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::spec_test

@@ -4,7 +4,7 @@
 #include "eval/points.h"
 #include "parity/clustered.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::area_test {
 namespace {
 
 using Vec3 = std::array<double, 3>;
@@ -93,4 +93,4 @@ TEST(AreaLights, ADiscIsLessThanTheWallBehindIt) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::area_test

@@ -10,7 +10,7 @@
 
 #include "photometry/distribution.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::clustered_test {
 namespace {
 
 TEST(Clustered, AThousandLightsGiveWhatALoopOverAllGives) {
@@ -189,4 +189,4 @@ TEST(Clustered, AProfileOfAFileShinesAsItSays) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::clustered_test

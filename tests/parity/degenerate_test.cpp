@@ -10,7 +10,7 @@
 #include "support/answers.h"
 #include "support/cases.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::degenerate_test {
 namespace {
 
 nlohmann::json colors(const std::string& file, const std::vector<std::string>& texels, Engine engine) {
@@ -50,4 +50,4 @@ TEST(ParityDegenerate, ATexelOfNoLengthLeavesTheNormal) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::degenerate_test

@@ -8,7 +8,7 @@
 #include "targets/legalize.h"
 #include "targets/target.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::essl_test {
 namespace {
 
 using nlohmann::json;
@@ -103,4 +103,4 @@ TEST(ParityEssl, AnotherShaderIsOutside) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::essl_test

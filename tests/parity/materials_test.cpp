@@ -9,7 +9,7 @@
 #include "parity/subject.h"
 #include "passes/pipeline.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::materials_test {
 namespace {
 
 /// The driver compiles each shader three times, so most settings take every third material.
@@ -148,4 +148,4 @@ TEST(ParityMaterials, VertexStages) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::materials_test

@@ -12,7 +12,7 @@
 #include "parity/mutations.h"
 #include "parity/subject.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::nodes_test {
 namespace {
 
 constexpr size_t kPoints = 4096;
@@ -139,4 +139,4 @@ TEST(ParityMaterials, WhatMattersIsNoticed) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::nodes_test

@@ -17,7 +17,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::optimized_test {
 namespace {
 
 /// Lowers a material and runs all passes.
@@ -245,4 +245,4 @@ TEST(ParityOptimized, AWrongFormIsFound) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::optimized_test

@@ -5,7 +5,7 @@
 
 #include "parity/subject.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::parameters_test {
 namespace {
 
 using Bounds = std::vector<std::vector<analysis::Range>>;
@@ -71,4 +71,4 @@ TEST(ParityParameters, OtherValuesGiveOtherColors) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::parameters_test

@@ -14,7 +14,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::programs_test {
 namespace {
 
 constexpr uint64_t kSeed = 5;
@@ -191,4 +191,4 @@ TEST(ParityPrograms, AWrongFillShows) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::programs_test

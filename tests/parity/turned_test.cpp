@@ -3,7 +3,7 @@
 
 #include "parity/clustered.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::turned_test {
 namespace {
 
 using Vec3 = std::array<double, 3>;
@@ -58,4 +58,4 @@ TEST(TurnedEnvironment, IsTheEnvironmentWithItsMapsTurnedBack) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::turned_test

@@ -10,7 +10,7 @@
 #include "targets/legalize.h"
 #include "targets/target.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::wgsl_test {
 namespace {
 
 using nlohmann::json;
@@ -124,4 +124,4 @@ TEST(ParityWgsl, AnotherShaderIsOutside) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::wgsl_test

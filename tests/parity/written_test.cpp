@@ -14,7 +14,7 @@
 #include "parity/subject.h"
 #include "support/cases.h"
 
-namespace lacquer::parity {
+namespace lacquer::parity::written_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -243,4 +243,4 @@ TEST(ParityWritten, AnotherTexelOrNumberShows) {
 }
 
 }  // namespace
-}  // namespace lacquer::parity
+}  // namespace lacquer::parity::written_test

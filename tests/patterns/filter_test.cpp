@@ -9,7 +9,7 @@
 
 #include "patterns/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::filter_test {
 namespace {
 
 constexpr size_t kPixels = 1500;
@@ -100,4 +100,4 @@ TEST(Filtered, WhatIsAsCoarseAsPixelsStays) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::filter_test

@@ -6,7 +6,7 @@
 
 #include "patterns/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::image_test {
 namespace {
 
 constexpr size_t kPoints = 5000;
@@ -212,4 +212,4 @@ TEST(Image, LatLongAndTiledAreTheDefinitions) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::image_test

@@ -9,7 +9,7 @@
 #include "lower/inline.h"
 #include "patterns/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::lookup_test {
 namespace {
 
 /// A node of a text, whose textures are these and whose other parameters these numbers, the same at each
@@ -154,4 +154,4 @@ TEST(Lookups, OutsideOfAnImageIsAColor) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::lookup_test

@@ -8,7 +8,7 @@
 
 #include "patterns/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::patterns_test {
 namespace {
 
 constexpr size_t kPoints = 100000;
@@ -293,4 +293,4 @@ TEST(Unified, KindsAreTheNodes) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::patterns_test

@@ -15,7 +15,7 @@
 #include "patterns/run.h"
 #include "vulkan/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::peer_image_test {
 namespace {
 
 constexpr size_t kPlaces = 20000;
@@ -288,4 +288,4 @@ TEST_P(ImagesAsMaterialX, GiveTheSameNumbers) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::peer_image_test

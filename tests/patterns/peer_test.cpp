@@ -11,7 +11,7 @@
 #include "patterns/run.h"
 #include "vulkan/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::peer_test {
 namespace {
 
 constexpr size_t kPoints = 100000;
@@ -158,4 +158,4 @@ TEST_P(AsMaterialX, GivesTheSameNumbers) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::peer_test

@@ -13,7 +13,7 @@
 #include "physics/lobe.h"
 #include "physics/node_values.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::area_light_test {
 namespace {
 
 /// A light of radiance 1: it shines against cross(x, y).
@@ -456,4 +456,4 @@ TEST(AreaLights, TheTableIsTheDocumentations) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::area_light_test

@@ -11,7 +11,7 @@
 #include "physics/model.h"
 #include "support/answers.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::bump_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -187,4 +187,4 @@ TEST_F(Bump, BothSidesHaveThem) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::bump_test

@@ -9,7 +9,7 @@
 
 #include "physics/subject.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::degenerate_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -134,4 +134,4 @@ TEST(Degenerate, TextureCoordinatesThatDoNotChangeAreNoTangent) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::degenerate_test

@@ -11,7 +11,7 @@
 #include "support/answers.h"
 #include "support/cases.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::eval_test {
 namespace {
 
 class Eval : public testing::Test {
@@ -109,7 +109,7 @@ TEST_F(Eval, DefaultsAndDigits) {
 }
 
 TEST_F(Eval, ErrorsOfPointsNameThePlace) {
-  const std::string file = write("m.gltf", gltfOf({}));
+  const std::string file = write("m.gltf", gltfOf(Material{}));
   EXPECT_EQ(errorOf(file, R"([{"v": [0, 0, 1.5]}])"),
             "points.json:/0/v: error: v has the length 1.5 [not-unit]\n  help: it must be a unit vector, to "
             "a thousandth\n");
@@ -212,4 +212,4 @@ TEST_F(Eval, MissingImagesNameTheSlot) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::eval_test

@@ -8,7 +8,6 @@ namespace lacquer::physics {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 double sq(double x) { return x * x; }
 
@@ -26,16 +25,16 @@ Vec3 rgbOf(const Vec3& xyz) {
 
 /// The text's evalSensitivity. The path is in nanometres.
 Vec3 sensitivityOf(double path, const Vec3& shift) {
-  const double phase = 2 * kPi * path * 1e-9;
+  const double phase = 2 * std::numbers::pi * path * 1e-9;
   const Vec3 val{5.4856e-13, 4.4201e-13, 5.2481e-13};
   const Vec3 pos{1.6810e6, 1.7953e6, 2.2084e6};
   const Vec3 var{4.3278e9, 9.3046e9, 6.6121e9};
   Vec3 xyz{};
   for (size_t i = 0; i < 3; ++i) {
-    xyz[i] = val[i] * std::sqrt(2 * kPi * var[i]) * std::cos(pos[i] * phase + shift[i]) *
+    xyz[i] = val[i] * std::sqrt(2 * std::numbers::pi * var[i]) * std::cos(pos[i] * phase + shift[i]) *
              std::exp(-sq(phase) * var[i]);
   }
-  xyz[0] += 9.7470e-14 * std::sqrt(2 * kPi * 4.5282e9) * std::cos(2.2399e6 * phase + shift[0]) *
+  xyz[0] += 9.7470e-14 * std::sqrt(2 * std::numbers::pi * 4.5282e9) * std::cos(2.2399e6 * phase + shift[0]) *
             std::exp(-4.5282e9 * sq(phase));
   for (double& x : xyz) x /= 1.0685e-7;
   return rgbOf(xyz);
@@ -65,7 +64,7 @@ Vec3 filmFresnel(double cosine, const Vec3& F0, double ior, double thickness, co
     const double root = std::sqrt(readings.bounded_guard ? std::min(guarded, 0.9999) : guarded);
     const double base_ior = (1 + root) / (1 - root);
     R23[i] = schlickOf(f0Of(base_ior, ior), cos_t);
-    phi[i] = kPi + (base_ior < ior ? kPi : 0);
+    phi[i] = std::numbers::pi + (base_ior < ior ? std::numbers::pi : 0);
   }
   const auto sensitivity = readings.turns_of_waves ? sensitivityOf : sensitivityOfTurnedColors;
   const Vec3 S1 = sensitivity(path, phi);

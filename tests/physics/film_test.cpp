@@ -8,7 +8,7 @@
 #include "physics/film_reference.h"
 #include "physics/node_values.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::film_test {
 namespace {
 
 struct Film {
@@ -240,4 +240,4 @@ TEST(Film, TurnsGoToTheWaves) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::film_test

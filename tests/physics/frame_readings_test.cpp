@@ -7,7 +7,7 @@
 #include "physics/stack_subject.h"
 #include "support/materials.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::frame_readings_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -245,4 +245,4 @@ TEST(FrameReadings, E28TheFrameIsOrthonormalUnderANormalMap) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::frame_readings_test

@@ -7,7 +7,7 @@
 #include "eval/dfg.h"
 #include "physics/subject.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::furnace_test {
 namespace {
 
 /// How base colour and metalness reach the shader: as factors, or as texels that take the general form.
@@ -106,4 +106,4 @@ TEST(Furnace, WhiteIsWhite) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::furnace_test

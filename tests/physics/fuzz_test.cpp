@@ -7,7 +7,7 @@
 
 #include "physics/cloth.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::fuzz_test {
 namespace {
 
 using nlohmann::json;
@@ -175,4 +175,4 @@ TEST(FuzzReadings, E18EmissionLiesOnTop) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::fuzz_test

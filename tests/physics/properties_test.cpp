@@ -10,7 +10,7 @@
 #include "passes/pipeline.h"
 #include "physics/subject.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::properties_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -372,4 +372,4 @@ TEST(Properties, EnvironmentBrdfTableInterpolates) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::properties_test

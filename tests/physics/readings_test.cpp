@@ -11,7 +11,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::readings_test {
 namespace {
 
 constexpr double kTight = 1e-12;
@@ -496,4 +496,4 @@ TEST(Readings, ClearcoatAndCoatAgreeInTheParameterSweep) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::readings_test

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "physics/model.h"
 
@@ -8,7 +9,6 @@ namespace lacquer::physics {
 namespace {
 
 using Real = long double;
-constexpr Real kPi = 3.141592653589793238462643383279502884L;
 
 struct V3 {
   Real x = 0, y = 0, z = 0;
@@ -41,7 +41,7 @@ Real specular(Real alpha, V3 n, V3 v, V3 l) {
   const Real nl = std::abs(inner(n, l));
   const Real nv = std::abs(inner(n, v));
   if (nh <= 0 || inner(h, l) <= 0 || inner(h, v) <= 0) return 0;
-  const Real d = a2 / (kPi * square(square(nh) * (a2 - 1) + 1));
+  const Real d = a2 / (std::numbers::pi_v<Real> * square(square(nh) * (a2 - 1) + 1));
   const Real g =
       2 * nl * nv / (nv * std::sqrt(a2 + (1 - a2) * square(nl)) + nl * std::sqrt(a2 + (1 - a2) * square(nv)));
   return g * d / (4 * nl * nv);
@@ -53,7 +53,7 @@ Real specularAnisotropic(Real at, Real ab, V3 n, V3 t, V3 b, V3 v, V3 l) {
   const V3 h = unit(v + l);
   if (inner(n, h) <= 0) return 0;
   const Real d =
-      1 / (kPi * at * ab * square(square(inner(h, t) / at) + square(inner(h, b) / ab) + square(inner(h, n))));
+      1 / (std::numbers::pi_v<Real> * at * ab * square(square(inner(h, t) / at) + square(inner(h, b) / ab) + square(inner(h, n))));
   const Real nl = std::abs(inner(n, l));
   const Real nv = std::abs(inner(n, v));
   const Real view = nl * std::sqrt(square(at * inner(t, v)) + square(ab * inner(b, v)) + square(nv));
@@ -128,7 +128,7 @@ private:
     const Real brdf = specular(alpha, n, v_, l_);
     const V3 one{1, 1, 1};
     const V3 metal = (base_color_ + (one - base_color_) * weight) * brdf;
-    const V3 dielectric = mix(base_color_ * (1 / kPi), one * brdf, f0 + (1 - f0) * weight);
+    const V3 dielectric = mix(base_color_ * (1 / std::numbers::pi_v<Real>), one * brdf, f0 + (1 - f0) * weight);
     return mix(dielectric, metal, metallic) * cosine;
   }
 

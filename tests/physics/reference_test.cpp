@@ -6,7 +6,7 @@
 
 #include "physics/subject.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::reference_test {
 namespace {
 
 /// Relative to the colour's largest component: a black channel beside a bright one has no digits of its own.
@@ -177,4 +177,4 @@ TEST(Reference, FloatAgreesAfterThePipeline) { expectFloatAgrees(true, 1e-5); }
 TEST(Reference, FloatAgreesBeforeThePipeline) { expectFloatAgrees(false, 5e-5); }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::reference_test

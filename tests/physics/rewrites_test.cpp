@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace lacquer::physics {
+namespace lacquer::physics::rewrites_test {
 namespace {
 
 template <class T>
@@ -204,4 +204,4 @@ TEST(Rewrites, RoundNoWorseThanTheText) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::rewrites_test

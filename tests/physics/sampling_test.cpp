@@ -14,7 +14,7 @@
 #include "physics/subject.h"
 #include "support/chi_squared.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::sampling_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -529,4 +529,4 @@ TEST(Sampling, LightIsTriedWhereverItIs) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::sampling_test

@@ -9,7 +9,7 @@
 #include "eval/sheen.h"
 #include "physics/cloth.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::sheen_test {
 namespace {
 
 using nlohmann::json;
@@ -251,4 +251,4 @@ TEST(Sheen, TheTableInterpolates) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::sheen_test

@@ -9,7 +9,7 @@
 #include "physics/stack_subject.h"
 #include "support/materials.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::stack_readings_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -537,4 +537,4 @@ TEST(StackReadings, E52InnerIndexOfTheClearcoatWins) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::stack_readings_test

@@ -8,7 +8,6 @@ namespace lacquer::physics {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 /// The least alpha of a microfacet lobe (reading 11 of the coats).
 constexpr double kLeastAlpha = 0.001;
 
@@ -69,7 +68,7 @@ double lobeOf(const Frame& f, const Alphas& alpha, const Vec3& v, const Vec3& l,
   const Vec3 h = normalized(v + l);
   if (dot(f.n, h) <= 0) return 0;
   const double d =
-      1 / (kPi * alpha.t * alpha.b *
+      1 / (std::numbers::pi * alpha.t * alpha.b *
            square(square(dot(h, f.t) / alpha.t) + square(dot(h, f.b) / alpha.b) + square(dot(h, f.n))));
   const auto masked = [&](const Vec3& w) {
     return std::sqrt(square(alpha.t * dot(f.t, w)) + square(alpha.b * dot(f.b, w)) + square(dot(f.n, w)));
@@ -95,7 +94,7 @@ double transmittedLobe(const Stack& m, const Frame& f, const Vec3& v, const Vec3
   if (readings.facing_by_light && dot(h, l) / nl <= 0) return 0;
   const double nh2 = square(dot(f.n, h));
   const Vec3 across = cross(f.n, h);
-  const double d = square(alpha) / (kPi * square(dot(across, across) + square(alpha) * nh2));
+  const double d = square(alpha) / (std::numbers::pi * square(dot(across, across) + square(alpha) * nh2));
   const auto masked = [&](double cosine) {
     return std::abs(cosine) + std::sqrt(square(alpha) + (1 - square(alpha)) * square(cosine));
   };
@@ -171,7 +170,7 @@ Interface interfaceAt(const Stack& m, double cosine, double view_cosine, const S
 /// A diffuse surface of that colour.
 Vec3 diffuseOf(const Stack& m, const Vec3& color, const Vec3& n, const Vec3& v, const Vec3& l,
                const StackReadings& readings) {
-  if (m.diffuse_roughness == 0 || readings.lambert) return color * (1 / kPi);
+  if (m.diffuse_roughness == 0 || readings.lambert) return color * (1 / std::numbers::pi);
   const auto rough = [&](double albedo) {
     return orenNayar(albedo, m.diffuse_roughness, dot(n, v), dot(n, l), dot(v, l));
   };
@@ -204,7 +203,7 @@ Vec3 reflectedFrom(const Stack& m, const Frame& f, const Vec3& v, const Vec3& vi
   const Vec3 diffuse =
       diffuseOf(m, m.base_color, f.n, readings.retro_moves_rough_diffuse ? v : view, l, readings);
   const Vec3 body = diffuse * std::max(beside, 0.0) +
-                    m.multiscatter_color * (t * b.scattered * (1 - m.scatter_anisotropy) / 2 / kPi);
+                    m.multiscatter_color * (t * b.scattered * (1 - m.scatter_anisotropy) / 2 / std::numbers::pi);
   return mix(at_lobe.dielectric * lobe + at_body.body * body, at_lobe.metal * lobe, m.metallic);
 }
 
@@ -240,7 +239,7 @@ Vec3 transmitted(const Stack& m, const Frame& f, const Vec3& v, const Vec3& l,
   double lobe = 0;
   if (t * (1 - b.scattered) > 0) lobe = transmittedLobe(m, f, v, l, mirrored, readings);
   const Vec3 specular = m.base_color * (t * (1 - b.scattered) * lobe);
-  const Vec3 scattered = m.multiscatter_color * (t * b.scattered * (1 + m.scatter_anisotropy) / 2 / kPi);
+  const Vec3 scattered = m.multiscatter_color * (t * b.scattered * (1 + m.scatter_anisotropy) / 2 / std::numbers::pi);
   return i.body * (diffuse + specular + scattered) * attenuationOf(m) * (1 - m.metallic);
 }
 
@@ -387,8 +386,8 @@ StackMedium mediumOf(const Stack& stack) {
 
 namespace {
 
-constexpr double kFujiiLoss = 0.5 - 2 / (3 * kPi);
-constexpr double kFujiiMean = 2.0 / 3 - 28 / (15 * kPi);
+constexpr double kFujiiLoss = 0.5 - 2 / (3 * std::numbers::pi);
+constexpr double kFujiiMean = 2.0 / 3 - 28 / (15 * std::numbers::pi);
 
 /// The directional albedo of Fujii's Oren-Nayar with a white colour.
 double fujiiAlbedo(double roughness, double cosine, bool exact) {
@@ -402,7 +401,7 @@ double fujiiAlbedo(double roughness, double cosine, bool exact) {
   const double tail = cosine == 0 ? 0 : sine / cosine * (1 - sine * sine * sine);
   const double g =
       sine * (std::acos(std::clamp(cosine, -1.0, 1.0)) - sine * cosine) + 2.0 / 3 * (tail - sine);
-  return a * (1 + roughness / kPi * g);
+  return a * (1 + roughness / std::numbers::pi * g);
 }
 
 /// The colour of the light that bounced more than once, per its share.
@@ -414,12 +413,12 @@ double orenNayar(double albedo, double roughness, double NdotV, double NdotL, do
   const double a = 1 / (1 + kFujiiLoss * roughness);
   const double s = cosine - NdotV * NdotL;
   const double s_over_t = s > 0 ? s / std::max(NdotV, NdotL) : s;
-  const double once = albedo / kPi * a * (1 + roughness * s_over_t);
+  const double once = albedo / std::numbers::pi * a * (1 + roughness * s_over_t);
   const double mean = a * (1 + kFujiiMean * roughness);
   const double left_view = std::max(1 - fujiiAlbedo(roughness, NdotV, exact), 0.0);
   const double left_light = std::max(1 - fujiiAlbedo(roughness, NdotL, exact), 0.0);
   if (mean >= 1) return once;
-  return once + manyBounces(albedo, mean) / kPi * left_view * left_light / (1 - mean);
+  return once + manyBounces(albedo, mean) / std::numbers::pi * left_view * left_light / (1 - mean);
 }
 
 double orenNayarAlbedo(double albedo, double roughness, double NdotV, bool exact) {

@@ -8,7 +8,7 @@
 
 #include "physics/stack_subject.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::stack_test {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -253,4 +253,4 @@ TEST(Stack, RandomStacksAgreeInDouble) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::stack_test

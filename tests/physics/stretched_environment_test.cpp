@@ -13,7 +13,7 @@
 #include "physics/lobe.h"
 #include "physics/node_values.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::stretched_environment_test {
 namespace {
 
 constexpr double kMaxLod = 8;
@@ -447,4 +447,4 @@ TEST(StretchedEnvironment, TheTableIsTheDocumentations) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::stretched_environment_test

@@ -10,7 +10,7 @@
 #include "support/cases.h"
 #include "support/materials.h"
 
-namespace lacquer::physics {
+namespace lacquer::physics::white_room_test {
 namespace {
 
 /// The fits and tables are this far from their integrals, where they are above.
@@ -84,4 +84,4 @@ TEST(WhiteRoom, HasNoMaterialOfEverythingTogetherAboveOne) {
 }
 
 }  // namespace
-}  // namespace lacquer::physics
+}  // namespace lacquer::physics::white_room_test

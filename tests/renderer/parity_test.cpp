@@ -9,7 +9,7 @@
 
 #include "renderer.h"
 
-namespace lacquer::test {
+namespace lacquer::test::parity_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -260,4 +260,4 @@ TEST_P(RendererParity, PicturesAreWhatEvalSays) {
 INSTANTIATE_TEST_SUITE_P(AtTimes, RendererParity, testing::Values(0.0, 2.5));
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::parity_test

@@ -11,7 +11,7 @@
 
 #include "renderer.h"
 
-namespace lacquer::test {
+namespace lacquer::test::picture_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -212,4 +212,4 @@ TEST_F(Pictures, WrongWordsAreToldOf) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::picture_test

@@ -13,7 +13,7 @@
 #include "support/answers.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::device_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -216,4 +216,4 @@ const bool kRegistered = registerFiles("StressDeviceCases", sourceFolder() / "te
                                        });
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::device_test

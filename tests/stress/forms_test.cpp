@@ -7,7 +7,7 @@
 #include "stress/forms.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::forms_test {
 namespace {
 
 Options optionsWith(const std::string& nodes, const std::string& profile) {
@@ -73,4 +73,4 @@ TEST(FaultyForms, AreFound) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::forms_test

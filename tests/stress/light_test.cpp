@@ -7,7 +7,7 @@
 #include "stress/attack.h"
 #include "stress/directions.h"
 
-namespace lacquer::stress {
+namespace lacquer::stress::light_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -244,4 +244,4 @@ TEST(Space, KeepsFlagsOnTheWay) {
 }
 
 }  // namespace
-}  // namespace lacquer::stress
+}  // namespace lacquer::stress::light_test

@@ -14,7 +14,7 @@
 #include "support/answers.h"
 #include "support/cases.h"
 
-namespace lacquer::test {
+namespace lacquer::test::stress_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -316,4 +316,4 @@ const bool kRegistered =
     });
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::stress_test

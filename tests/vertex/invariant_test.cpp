@@ -11,7 +11,7 @@
 
 #include "lacquer.h"
 
-namespace lacquer::test {
+namespace lacquer::test::invariant_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -170,4 +170,4 @@ TEST(Invariant, EveryTargetIsTold) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::invariant_test

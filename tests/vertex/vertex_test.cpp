@@ -18,7 +18,7 @@
 #include "reference.h"
 #include "vulkan/run.h"
 
-namespace lacquer::test {
+namespace lacquer::test::vertex_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -461,4 +461,4 @@ TEST(VertexFacts, ATemplateWithoutThemSaysSo) {
 }
 
 }  // namespace
-}  // namespace lacquer::test
+}  // namespace lacquer::test::vertex_test
