@@ -1,6 +1,6 @@
 // Edits: edits/*.json are graphs with what is done to them, beside them what each edit says; and edits at
 // random.
-#include "graph/edit.h"
+#include "edit/edit.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@
 #include "exchange/procedurals_out.h"
 #include "graph/graph.h"
 #include "material/material.h"
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/cases.h"
 #include "support/materials.h"
 

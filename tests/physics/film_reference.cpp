@@ -8,7 +8,6 @@ namespace lacquer::physics {
 
 namespace {
 
-
 double sq(double x) { return x * x; }
 
 double schlickOf(double F0, double cosine) { return F0 + (1 - F0) * std::pow(1 - cosine, 5); }

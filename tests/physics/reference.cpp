@@ -52,8 +52,8 @@ Real specular(Real alpha, V3 n, V3 v, V3 l) {
 Real specularAnisotropic(Real at, Real ab, V3 n, V3 t, V3 b, V3 v, V3 l) {
   const V3 h = unit(v + l);
   if (inner(n, h) <= 0) return 0;
-  const Real d =
-      1 / (std::numbers::pi_v<Real> * at * ab * square(square(inner(h, t) / at) + square(inner(h, b) / ab) + square(inner(h, n))));
+  const Real d = 1 / (std::numbers::pi_v<Real> * at * ab *
+                      square(square(inner(h, t) / at) + square(inner(h, b) / ab) + square(inner(h, n))));
   const Real nl = std::abs(inner(n, l));
   const Real nv = std::abs(inner(n, v));
   const Real view = nl * std::sqrt(square(at * inner(t, v)) + square(ab * inner(b, v)) + square(nv));
@@ -128,7 +128,8 @@ private:
     const Real brdf = specular(alpha, n, v_, l_);
     const V3 one{1, 1, 1};
     const V3 metal = (base_color_ + (one - base_color_) * weight) * brdf;
-    const V3 dielectric = mix(base_color_ * (1 / std::numbers::pi_v<Real>), one * brdf, f0 + (1 - f0) * weight);
+    const V3 dielectric =
+        mix(base_color_ * (1 / std::numbers::pi_v<Real>), one * brdf, f0 + (1 - f0) * weight);
     return mix(dielectric, metal, metallic) * cosine;
   }
 

@@ -202,8 +202,9 @@ Vec3 reflectedFrom(const Stack& m, const Frame& f, const Vec3& v, const Vec3& vi
       readings.diffuse_transmission_beside ? 1 - t - b.through_diffuse : (1 - t) * (1 - b.through_diffuse);
   const Vec3 diffuse =
       diffuseOf(m, m.base_color, f.n, readings.retro_moves_rough_diffuse ? v : view, l, readings);
-  const Vec3 body = diffuse * std::max(beside, 0.0) +
-                    m.multiscatter_color * (t * b.scattered * (1 - m.scatter_anisotropy) / 2 / std::numbers::pi);
+  const Vec3 body =
+      diffuse * std::max(beside, 0.0) +
+      m.multiscatter_color * (t * b.scattered * (1 - m.scatter_anisotropy) / 2 / std::numbers::pi);
   return mix(at_lobe.dielectric * lobe + at_body.body * body, at_lobe.metal * lobe, m.metallic);
 }
 
@@ -239,7 +240,8 @@ Vec3 transmitted(const Stack& m, const Frame& f, const Vec3& v, const Vec3& l,
   double lobe = 0;
   if (t * (1 - b.scattered) > 0) lobe = transmittedLobe(m, f, v, l, mirrored, readings);
   const Vec3 specular = m.base_color * (t * (1 - b.scattered) * lobe);
-  const Vec3 scattered = m.multiscatter_color * (t * b.scattered * (1 + m.scatter_anisotropy) / 2 / std::numbers::pi);
+  const Vec3 scattered =
+      m.multiscatter_color * (t * b.scattered * (1 + m.scatter_anisotropy) / 2 / std::numbers::pi);
   return i.body * (diffuse + specular + scattered) * attenuationOf(m) * (1 - m.metallic);
 }
 

@@ -8,7 +8,7 @@
 
 #include "cost/choose.h"
 #include "cost/cost.h"
-#include "graph/edit.h"
+#include "graph/check_parts.h"
 #include "graph/program_key.h"
 #include "interface/interface.h"
 #include "lower/lower.h"

@@ -6,8 +6,9 @@
 #include <limits>
 
 #include "api/internal.h"
+#include "edit/edit.h"
+#include "graph/check_parts.h"
 #include "graph/contracts.h"
-#include "graph/edit.h"
 #include "graph/json_parts.h"
 #include "graph/text.h"
 #include "setting/messages.h"

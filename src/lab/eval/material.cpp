@@ -8,8 +8,8 @@
 
 #include "cost/choose.h"
 #include "eval/dfg.h"
+#include "graph/check_parts.h"
 #include "graph/contracts.h"
-#include "graph/edit.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
 #include "lower/lower.h"

@@ -5,7 +5,7 @@
 
 #include "exchange/surface_out.h"
 #include "graph/graph.h"
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 namespace lacquer::exchange {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "exchange/pattern_out.h"
-#include "materialx/looks.h"
-#include "materialx/models.h"
 #include "materialx/patterns.h"
-#include "materialx/values.h"
+#include "mtlx/looks.h"
+#include "mtlx/models.h"
+#include "mtlx/values.h"
 
 namespace lacquer::exchange {
 

@@ -3,7 +3,7 @@
 
 #include "graph/graph.h"
 #include "lacquer/options.h"
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 namespace lacquer::exchange {
 

@@ -9,7 +9,7 @@
 #include "gltf/texture_source.h"
 #include "graph/text.h"
 #include "ir/types.h"
-#include "materialx/values.h"
+#include "mtlx/values.h"
 #include "support/say_once.h"
 
 namespace lacquer::exchange {

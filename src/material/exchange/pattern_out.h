@@ -13,8 +13,8 @@
 #include "gltf/facts.h"
 #include "graph/contracts.h"
 #include "graph/graph.h"
-#include "materialx/element.h"
 #include "materialx/patterns.h"
+#include "mtlx/element.h"
 #include "support/relative.h"
 
 namespace lacquer::exchange {

@@ -2,7 +2,7 @@
 
 #include "exchange/pattern_out.h"
 #include "ir/types.h"
-#include "materialx/values.h"
+#include "mtlx/values.h"
 
 namespace lacquer::exchange {
 

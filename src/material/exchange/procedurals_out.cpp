@@ -9,7 +9,7 @@
 #include "exchange/surface_out.h"
 #include "graph/contracts.h"
 #include "graph/text.h"
-#include "materialx/values.h"
+#include "mtlx/values.h"
 #include "support/plain_name.h"
 #include "support/say_once.h"
 

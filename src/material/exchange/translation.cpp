@@ -8,9 +8,9 @@
 #include <optional>
 #include <set>
 
-#include "materialx/looks.h"
 #include "materialx/patterns.h"
-#include "materialx/values.h"
+#include "mtlx/looks.h"
+#include "mtlx/values.h"
 #include "support/text.h"
 
 namespace lacquer::exchange {

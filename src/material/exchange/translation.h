@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::exchange {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "graph/check_body.h"
-#include "graph/edit.h"
+#include "graph/check_parts.h"
 #include "graph/matrices.h"
 #include "graph/text.h"
 #include "json/path.h"

@@ -6,9 +6,9 @@
 
 #include "graph/contracts.h"
 #include "lang/suggest.h"
-#include "materialx/looks.h"
-#include "materialx/models.h"
 #include "materialx/patterns.h"
+#include "mtlx/looks.h"
+#include "mtlx/models.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -120,7 +120,7 @@ namespace {
 bool isAll(const Element& node, std::string_view name, double number) {
   const Element* input = node.child("input", name);
   if (input == nullptr) return true;
-  if (Patterns::isConnected(*input)) return false;
+  if (isConnected(*input)) return false;
   const std::optional<std::vector<double>> numbers = numbersOf(input->get("value"));
   return numbers && std::all_of(numbers->begin(), numbers->end(), [&](double x) { return x == number; });
 }
@@ -174,7 +174,7 @@ namespace {
 
 bool isSaid(const Element& node, std::string_view name) {
   const Element* input = node.child("input", name);
-  return input != nullptr && (Patterns::isConnected(*input) || !input->get("value").empty());
+  return input != nullptr && (isConnected(*input) || !input->get("value").empty());
 }
 
 }  // namespace

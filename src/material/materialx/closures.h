@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 namespace lacquer::materialx {
 

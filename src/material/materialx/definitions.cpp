@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "materialx/element.h"
 #include "materialx/flaws.h"
 #include "materialx/materialx.h"
-#include "materialx/models.h"
-#include "materialx/namespaces.h"
 #include "materialx/patterns.h"
 #include "materialx/surface.h"
+#include "mtlx/element.h"
+#include "mtlx/models.h"
+#include "mtlx/namespaces.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {

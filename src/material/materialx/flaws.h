@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 namespace lacquer::materialx {
 

@@ -7,10 +7,10 @@
 #include <tuple>
 
 #include "materialx/closures.h"
-#include "materialx/element.h"
-#include "materialx/looks.h"
-#include "materialx/models.h"
 #include "materialx/surface.h"
+#include "mtlx/element.h"
+#include "mtlx/looks.h"
+#include "mtlx/models.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -195,7 +195,7 @@ void MaterialsReader::closures(Made& made, const Found& found) {
 /// What moves the vertices, of the material that was made last.
 void MaterialsReader::displacement(const Element& at) {
   const Element* in = at.child("input", "displacementshader");
-  if (in == nullptr || !Patterns::isConnected(*in)) return;
+  if (in == nullptr || !isConnected(*in)) return;
   Scope& scope = patterns_.body(document_.root, fmt::format("{}_displacement", at.name()));
   made_.back().displacement = &scope;
   if (const std::optional<Source> source = patterns_.connected(scope, *in))
@@ -227,7 +227,7 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
   made.name = name;
   // What stands beside a nodegraph reaches an instance of it alone.
   const bool instance = std::any_of(owner.children.begin(), owner.children.end(), [](const Element& child) {
-    return child.category == "input" && Patterns::isConnected(child);
+    return child.category == "input" && isConnected(child);
   });
   Element use{"input",
               {{"name", std::string(output.name())}, {"type", std::string(output.get("type"))}},
@@ -260,7 +260,7 @@ void MaterialsReader::tellRange(const Element& owner, const Element& output, Dia
   const Element* node = patterns_.nodeOf(owner, output.get("nodename"));
   const bool constant = node != nullptr && node->category == "constant";
   const Element* number = constant ? node->child("input", "value") : nullptr;
-  if (number == nullptr || Patterns::isConnected(*number) || number->find("value") == nullptr) return;
+  if (number == nullptr || isConnected(*number) || number->find("value") == nullptr) return;
   const std::optional<ir::Type> type = typeOf(number->get("type"));
   if (!type || (*type != ir::Type::Float && !ir::isFloatVector(*type))) return;
   const Result<ir::Components> read = valueOf(*number, *type, patterns_.units());
@@ -286,7 +286,7 @@ void MaterialsReader::patternsAlone() {
     const auto outputs = std::count_if(child.children.begin(), child.children.end(),
                                        [](const Element& e) { return e.category == "output"; });
     for (const Element& output : child.children) {
-      if (output.category != "output" || !Patterns::isConnected(output)) continue;
+      if (output.category != "output" || !isConnected(output)) continue;
       pattern(child, output,
               outputs == 1 ? std::string(child.name()) : fmt::format("{}/{}", child.name(), output.name()));
     }
@@ -297,12 +297,11 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
   const Element& root = document_.root;
   for (const Element& child : root.children) {
     const Element* volume = child.child("input", "volumeshader");
-    if (child.category == "volumematerial" && volume != nullptr && Patterns::isConnected(*volume))
+    if (child.category == "volumematerial" && volume != nullptr && isConnected(*volume))
       refuse(child, child.name());
     if (child.category != "surfacematerial") continue;
     Diagnostics left_out;
-    if (const Element* in = child.child("input", "backsurfaceshader");
-        in != nullptr && Patterns::isConnected(*in))
+    if (const Element* in = child.child("input", "backsurfaceshader"); in != nullptr && isConnected(*in))
       left_out.push_back({"not-translated",
                           Severity::Warning,
                           in->place,

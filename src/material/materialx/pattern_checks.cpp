@@ -7,8 +7,8 @@
 
 #include "lang/suggest.h"
 #include "materialx/closures.h"
-#include "materialx/looks.h"
 #include "materialx/patterns.h"
+#include "mtlx/looks.h"
 #include "support/say_once.h"
 #include "support/text.h"
 

@@ -10,7 +10,7 @@
 #include "graph/text.h"
 #include "lang/suggest.h"
 #include "materialx/closures.h"
-#include "materialx/looks.h"
+#include "mtlx/looks.h"
 #include "support/plain_name.h"
 #include "support/say_once.h"
 #include "support/text.h"
@@ -30,15 +30,6 @@ std::string graphName(std::string_view name) {
   std::string text = plainName(name);
   if (text.empty()) return "unnamed";
   return text[0] >= '0' && text[0] <= '9' ? "n" + text : text;
-}
-
-std::string NameSet::free(std::string name) {
-  if (taken_.insert(name).second) return name;
-  size_t& number = next_.try_emplace(name, 2).first->second;
-  while (true) {
-    std::string free = fmt::format("{}_{}", name, number++);
-    if (taken_.insert(free).second) return free;
-  }
 }
 
 Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Library& library,
@@ -400,12 +391,6 @@ Source Patterns::add(Scope& scope, std::string_view name, std::string type, grap
   scope.group_.nodes.push_back(std::move(node));
   scope.elements_.push_back(nullptr);
   return {graph::NodeRef{scope.group_.nodes.back().id, {}}, {}};
-}
-
-bool Patterns::isConnected(const Element& input) {
-  return input.find("nodename") != nullptr || input.find("nodegraph") != nullptr ||
-         input.find("interfacename") != nullptr ||
-         (input.find("output") != nullptr && input.find("value") == nullptr);
 }
 
 /// The node, nodegraph or output that an input names.

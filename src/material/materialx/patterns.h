@@ -15,9 +15,10 @@
 
 #include "graph/graph.h"
 #include "lang/library.h"
-#include "materialx/element.h"
 #include "materialx/flaws.h"
-#include "materialx/values.h"
+#include "mtlx/element.h"
+#include "mtlx/names.h"
+#include "mtlx/values.h"
 
 namespace lacquer::materialx {
 
@@ -36,19 +37,6 @@ struct PatternOptions {
 /// Among the elements of PatternOptions::definitions: a warning of one of its files, which is told where
 /// something of the file is used.
 inline constexpr std::string_view kWarning = "said:warning";
-
-/// Names that are given once.
-class NameSet {
-public:
-  void take(std::string name) { taken_.insert(std::move(name)); }
-  bool has(std::string_view name) const { return taken_.contains(name); }
-  /// The name, or with a number behind it where something has it already.
-  std::string free(std::string name);
-
-private:
-  std::set<std::string, std::less<>> taken_;
-  std::map<std::string, size_t, std::less<>> next_;  ///< the number to try
-};
 
 enum class Alpha : uint8_t { Opaque, Mask, Blend };
 
@@ -118,7 +106,6 @@ public:
   const Element* nodegraph(const Scope& scope, const Element& input) const;
   /// A node of a body that the document has not: what it gives. It lives as long as this.
   std::optional<graph::Source> insert(Scope& scope, Element element);
-  static bool isConnected(const Element& input);
   static std::optional<Diagnostic> wrongType(const Element& input, const Element& port);
 
   /// Asks for every output of every definition of PatternOptions::definitions.

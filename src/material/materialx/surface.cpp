@@ -8,7 +8,7 @@
 #include "graph/contracts.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
-#include "materialx/looks.h"
+#include "mtlx/looks.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -84,8 +84,8 @@ bool Surface::takeFactor(const Element& in, Value& value) {
     return false;
   const Element* first = node->child("input", "in1");
   const Element* second = node->child("input", "in2");
-  if (first == nullptr || second == nullptr || !Patterns::isConnected(*first) ||
-      Patterns::isConnected(*second) || first->get("type") != in.get("type"))
+  if (first == nullptr || second == nullptr || !isConnected(*first) || isConnected(*second) ||
+      first->get("type") != in.get("type"))
     return false;
   const std::optional<ir::Type> type = typeOf(second->get("type"));
   if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return false;
@@ -105,7 +105,7 @@ Value Surface::value(std::string_view name, int size, ir::Components by_default,
   const Element* in = input(name);
   if (in == nullptr) return value;
   const ir::Type wanted = size == 1 ? ir::Type::Float : ir::Type::Vec3;
-  if (Patterns::isConnected(*in)) {
+  if (isConnected(*in)) {
     if (factored && takeFactor(*in, value)) return value;
     value.constant = {1, 1, 1, 1};
     value.source = patterns_.connected(scope_, *in);
@@ -134,7 +134,7 @@ Value Surface::whole(std::string_view name, std::array<double, 3> by_default) {
 
 double Surface::number(std::string_view name, double by_default) {
   const Element* in = input(name);
-  if (in != nullptr && Patterns::isConnected(*in)) {
+  if (in != nullptr && isConnected(*in)) {
     warn(name, fmt::format("{} is connected, and glTF has a number there", name),
          fmt::format("its default {} is taken", by_default));
     return by_default;
@@ -144,7 +144,7 @@ double Surface::number(std::string_view name, double by_default) {
 
 std::array<double, 3> Surface::color(std::string_view name, std::array<double, 3> by_default) {
   const Element* in = input(name);
-  if (in != nullptr && Patterns::isConnected(*in)) {
+  if (in != nullptr && isConnected(*in)) {
     warn(name, fmt::format("{} is connected, and glTF has a colour there", name), "its default is taken");
     return by_default;
   }
@@ -155,14 +155,14 @@ std::array<double, 3> Surface::color(std::string_view name, std::array<double, 3
 void Surface::leave(std::string_view name, double by_default) {
   const Element* in = input(name);
   if (in == nullptr) return;
-  if (!Patterns::isConnected(*in) && get(name, by_default).isConstant(by_default)) return;
+  if (!isConnected(*in) && get(name, by_default).isConstant(by_default)) return;
   warn(name, fmt::format("{} has no counterpart in glTF", name), "it is left out");
 }
 
 void Surface::leave(std::string_view name, std::array<double, 3> by_default) {
   const Element* in = input(name);
   if (in == nullptr) return;
-  if (!Patterns::isConnected(*in)) {
+  if (!isConnected(*in)) {
     const Value value = get(name, by_default);
     if (std::equal(by_default.begin(), by_default.end(), value.constant.begin())) return;
   }
@@ -290,7 +290,7 @@ void Surface::normalTexel(const Source& encoded, const std::string& texture, dou
 
 void Surface::normal(std::string_view name, const std::string& texture) {
   const Element* in = input(name);
-  if (in == nullptr || !Patterns::isConnected(*in)) return;
+  if (in == nullptr || !isConnected(*in)) return;
   const auto scaleOf = [&](const Element& map) {
     const Element* scale = map.child("input", "scale");
     if (scale == nullptr || scale->find("value") == nullptr) return 1.0;
@@ -320,7 +320,7 @@ void Surface::normal(std::string_view name, const std::string& texture) {
     }
     if (node->category != "normalmap") return other(node->category);
     const Element* encoded = node->child("input", "in");
-    if (encoded == nullptr || !Patterns::isConnected(*encoded)) return;
+    if (encoded == nullptr || !isConnected(*encoded)) return;
     if (const std::optional<Source> texel = patterns_.connected(scope_, *encoded))
       normalTexel(*texel, texture, scaleOf(*node));
     return;
@@ -339,7 +339,7 @@ void Surface::normal(std::string_view name, const std::string& texture) {
 
 void Surface::tangentSpaceNormal(std::string_view name, const std::string& texture) {
   const Element* in = input(name);
-  if (in == nullptr || !Patterns::isConnected(*in)) return;
+  if (in == nullptr || !isConnected(*in)) return;
   const std::optional<Source> unit = patterns_.connected(scope_, *in);
   if (unit)
     normalTexel(patterns_.add(scope_, "encoded_normal", "texel_normal", {{"normal", *unit}}), texture, 1);

@@ -1,4 +1,4 @@
-#include "graph/edit.h"
+#include "edit/edit.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "graph/check_body.h"
+#include "graph/check_parts.h"
 #include "graph/contracts.h"
 #include "graph/text.h"
 #include "lang/suggest.h"

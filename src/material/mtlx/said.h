@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::materialx {

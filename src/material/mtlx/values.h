@@ -10,7 +10,7 @@
 
 #include "ir/dag.h"
 #include "ir/types.h"
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 namespace lacquer::materialx {
 

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "json/path.h"
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {

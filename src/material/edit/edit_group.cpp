@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
+#include "edit/edit.h"
 #include "graph/check_body.h"
 #include "graph/contracts.h"
-#include "graph/edit.h"
 #include "graph/matrices.h"
 #include "graph/text.h"
 

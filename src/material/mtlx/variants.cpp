@@ -4,9 +4,9 @@
 #include <set>
 #include <span>
 
-#include "materialx/looks.h"
-#include "materialx/models.h"
-#include "materialx/said.h"
+#include "mtlx/looks.h"
+#include "mtlx/models.h"
+#include "mtlx/said.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {

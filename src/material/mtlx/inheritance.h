@@ -1,7 +1,7 @@
 // Nodes that inherit from other nodes.
 #pragma once
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::materialx {

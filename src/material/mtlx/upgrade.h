@@ -1,7 +1,7 @@
 // Documents of older versions as MaterialX 1.39 says them, by the rules of MaterialX's own library.
 #pragma once
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::materialx {

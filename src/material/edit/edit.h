@@ -110,20 +110,6 @@ private:
   bool checked_;
 };
 
-/// What check() finds wrong with an input of a node of a body, with all of them (null), or with an output.
-/// `group`: the body's; null for the graph itself.
-Diagnostics checkNode(const Graph& graph, const lang::Library& library, const Group* group, size_t node,
-                      const std::string* input);
-Diagnostics checkOutput(const Graph& graph, const lang::Library& library, const Group* group, size_t output);
-/// `uses`: with all that takes its value from it.
-Diagnostics checkParameter(const Graph& graph, const lang::Library& library, size_t parameter, bool uses);
-Diagnostics checkTexture(const Graph& graph, const lang::Library& library, size_t texture);
-Diagnostics checkGroup(const Graph& graph, const lang::Library& library, size_t group);
-Diagnostics checkInput(const Graph& graph, const lang::Library& library, size_t group, size_t input);
-
-/// For each parameter the values that its own range and every input or port that it goes to accept.
-std::vector<ir::Range> parameterLimits(const Graph& graph, const lang::Library& library);
-
 /// Does an edit that is given as a JSON object (docs/graph-format.md, "Edits"), or an array of edits one
 /// after the other, and returns what takes it back, which leaves the same bytes. On an error nothing has
 /// changed.

@@ -34,6 +34,9 @@ struct Element {
 /// Whether an element beside others may be a node: it is no port, no definition and nothing of geometry.
 bool isNodeElement(const Element& element);
 
+/// Whether an input or output takes its value from a node, a nodegraph or an input of the interface.
+bool isConnected(const Element& input);
+
 /// A name without the namespaces in front of it.
 inline std::string_view withoutNamespace(std::string_view name) { return name.substr(name.rfind(':') + 1); }
 

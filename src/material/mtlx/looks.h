@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lacquer/looks.h"
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::materialx {

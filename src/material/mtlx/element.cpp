@@ -1,8 +1,10 @@
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "support/text.h"
 
 namespace lacquer::materialx {
 
@@ -46,6 +48,12 @@ size_t countOfElements(const Element& element) {
   size_t count = 1;
   for (const Element& child : element.children) count += countOfElements(child);
   return count;
+}
+
+bool isConnected(const Element& input) {
+  return input.find("nodename") != nullptr || input.find("nodegraph") != nullptr ||
+         input.find("interfacename") != nullptr ||
+         (input.find("output") != nullptr && input.find("value") == nullptr);
 }
 
 std::string_view wideEncoding(std::string_view text) {

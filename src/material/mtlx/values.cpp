@@ -1,4 +1,4 @@
-#include "materialx/values.h"
+#include "mtlx/values.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "materialx/namespaces.h"
+#include "mtlx/namespaces.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "materialx/looks.h"
+#include "mtlx/looks.h"
 
 namespace lacquer::materialx {
 

@@ -1,4 +1,4 @@
-#include "materialx/upgrade.h"
+#include "mtlx/upgrade.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "materialx/patterns.h"
+#include "mtlx/names.h"
+#include "mtlx/values.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -134,7 +135,7 @@ void From38::normalMap(Element& element) {
   if (space == nullptr) return;
   const std::string* interface = space->find("interfacename");
   const Element* said = interface == nullptr ? space : scope_.child("input", *interface);
-  if (said == nullptr || Patterns::isConnected(*said))
+  if (said == nullptr || isConnected(*said))
     warn(*space, "the space of the normal map is connected", "it is taken for the tangent space");
   const bool object = said != nullptr && said->get("value") == "object";
   std::erase_if(element.children, [](const Element& e) { return e.name() == "space"; });
@@ -161,7 +162,7 @@ void From38::normalMap(Element& element) {
 void From38::radius(Element& element) {
   Element* in = inputOf(element, "radius");
   if (in == nullptr || in->get("type") != "vector3") return;
-  if (!Patterns::isConnected(*in)) {
+  if (!isConnected(*in)) {
     in->set("type", "color3");
     return in->set("colorspace", "none");
   }
@@ -360,7 +361,7 @@ void From38::thinFilms() {
     const std::string* graph = base->find("nodegraph");
     bool put = graph == nullptr && putFilm(belowOf(scope_), base->get("nodename"), *film, 0);
     const auto inside = graph == nullptr ? named_.end() : named_.find(*graph);
-    const bool connected = std::any_of(film->children.begin(), film->children.end(), &Patterns::isConnected);
+    const bool connected = std::any_of(film->children.begin(), film->children.end(), isConnected);
     if (inside != named_.end() && !connected) {
       for (const Element& output : inside->second->children) {
         if (output.category == "output" && output.get("type") == "BSDF")

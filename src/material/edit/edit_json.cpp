@@ -5,7 +5,7 @@
 #include <array>
 #include <span>
 
-#include "graph/edit.h"
+#include "edit/edit.h"
 #include "graph/json_parts.h"
 #include "json/json.h"
 #include "json/path.h"

@@ -9,12 +9,12 @@
 
 #include <pugixml.hpp>
 
-#include "materialx/element.h"
-#include "materialx/inheritance.h"
-#include "materialx/looks.h"
-#include "materialx/namespaces.h"
-#include "materialx/upgrade.h"
-#include "materialx/well_formed.h"
+#include "mtlx/element.h"
+#include "mtlx/inheritance.h"
+#include "mtlx/looks.h"
+#include "mtlx/namespaces.h"
+#include "mtlx/upgrade.h"
+#include "mtlx/well_formed.h"
 #include "support/contain.h"
 #include "support/file.h"
 #include "support/text.h"

@@ -1,4 +1,4 @@
-#include "materialx/inheritance.h"
+#include "mtlx/inheritance.h"
 
 #include <fmt/format.h>
 

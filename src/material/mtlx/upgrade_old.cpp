@@ -6,8 +6,9 @@
 #include <set>
 #include <span>
 
-#include "materialx/patterns.h"
-#include "materialx/upgrade.h"
+#include "mtlx/names.h"
+#include "mtlx/upgrade.h"
+#include "mtlx/values.h"
 #include "support/say_once.h"
 #include "support/text.h"
 

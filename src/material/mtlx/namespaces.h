@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 
 namespace lacquer::materialx {
 

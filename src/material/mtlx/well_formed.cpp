@@ -1,4 +1,4 @@
-#include "materialx/well_formed.h"
+#include "mtlx/well_formed.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "materialx/element.h"
+#include "mtlx/element.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {

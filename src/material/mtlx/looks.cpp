@@ -1,4 +1,4 @@
-#include "materialx/looks.h"
+#include "mtlx/looks.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "lang/suggest.h"
-#include "materialx/said.h"
+#include "mtlx/said.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {

@@ -1,4 +1,4 @@
-#include "materialx/models.h"
+#include "mtlx/models.h"
 
 #include <cassert>
 #include <utility>
