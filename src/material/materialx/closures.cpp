@@ -91,7 +91,7 @@ std::optional<Refusal> refused(const Element& element) {
 }
 
 bool Patterns::givesClosure(const Element& node) const {
-  return definitionsCalled(node.category) != nullptr || node.category == "nodegraph" ||
+  return !definitionsCalled(node).empty() || node.category == "nodegraph" ||
          !library_.forms(libraryName(node)).empty() || refused(node).has_value();
 }
 

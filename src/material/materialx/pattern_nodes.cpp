@@ -89,17 +89,12 @@ void Patterns::unknownNode(const Element& element) {
   if (const std::optional<Refusal> why = refused(element))
     return error(element, "unsupported-closure",
                  fmt::format("{} is not drawn: {}", quote(element.category), why->why), why->help);
-  const std::vector<size_t>* of = definitionsCalled(element.category);
-  const std::string_view space = spaceOf(element.category);
-  const auto fits = [&](size_t place) {
-    return space.empty() || definitions_[place].nodedef->get("namespace") == space;
-  };
-  if (of != nullptr && std::any_of(of->begin(), of->end(), fits)) {
-    const Definition& one = definitions_[(*of)[0]];
+  if (const std::vector<size_t> of = definitionsCalled(element); !of.empty()) {
+    const Definition& one = definitions_[of[0]];
     return error(
         element, "no-such-definition",
         fmt::format("no definition of {} has this type, version and these inputs", quote(element.category)),
-        fmt::format("{}{} stands in {}:{}", quote(one.nodedef->name()), of->size() > 1 ? ", the first," : "",
+        fmt::format("{}{} stands in {}:{}", quote(one.nodedef->name()), of.size() > 1 ? ", the first," : "",
                     one.nodedef->place.file, one.nodedef->place.line));
   }
   if (const auto only = of_targets_.find(withoutNamespace(element.category)); only != of_targets_.end())
@@ -109,11 +104,23 @@ void Patterns::unknownNode(const Element& element) {
                              quote(only->second->get("target"))));
   std::string help = "the library has no such node, and the document does not define it";
   if (maySuggest()) {
-    std::vector<std::string_view> names;
-    for (const Definition& one : definitions_) names.push_back(one.nodedef->get("node"));
+    std::vector<std::string> whole;
+    std::string alike;  // the same node of other namespaces
+    for (const Definition& one : definitions_) {
+      const std::string_view name = one.nodedef->get("node");
+      const std::string_view space = one.nodedef->get("namespace");
+      const bool named = space.empty() || space == element.get("namespace") || name.find(':') != name.npos;
+      whole.push_back(named ? std::string(name) : fmt::format("{}:{}", space, name));
+      if (withoutNamespace(name) != withoutNamespace(element.category) || whole.back() == element.category)
+        continue;
+      if (const std::string other = quote(whole.back()); alike.find(other) == alike.npos)
+        alike += (alike.empty() ? "" : ", ") + other;
+    }
+    if (!alike.empty()) help = fmt::format("other namespaces have {}: their nodes are named so", alike);
+    std::vector<std::string_view> names(whole.begin(), whole.end());
     for (const std::string_view name : library_.names(lang::DeclKind::Node))
       names.push_back(name.substr(0, name.find('<')));
-    help = lang::didYouMean(element.category, names, std::move(help));
+    if (alike.empty()) help = lang::didYouMean(element.category, names, std::move(help));
   }
   error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),
         std::move(help));

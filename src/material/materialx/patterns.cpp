@@ -168,19 +168,46 @@ const Element* Patterns::merged(const Element& nodedef, size_t depth) {
   return &whole;
 }
 
-/// The definitions whose node is called so: with its namespace, where their files write it there, or without;
-/// null for none.
-const std::vector<size_t>* Patterns::definitionsCalled(std::string_view category) const {
-  auto of = definitions_of_.find(category);
-  if (of == definitions_of_.end()) of = definitions_of_.find(withoutNamespace(category));
-  return of == definitions_of_.end() ? nullptr : &of->second;
+/// The definitions that the name of a node may mean. A plain name means those of the namespace that the node
+/// stands in, and then those without one; `studio:dust` those of `studio`.
+std::vector<size_t> Patterns::definitionsCalled(const Element& node) const {
+  std::vector<size_t> found;
+  const auto add = [&](std::string_view name, std::string_view space) {
+    const auto of = definitions_of_.find(name);
+    if (of == definitions_of_.end()) return;
+    for (const size_t place : of->second) {
+      if (definitions_[place].nodedef->get("namespace") == space) found.push_back(place);
+    }
+  };
+  const std::string_view name = node.category;
+  const size_t colon = name.rfind(':');
+  const bool plain = colon == std::string_view::npos;
+  const std::string_view space = plain ? node.get("namespace") : name.substr(0, colon);
+  if (!space.empty()) {
+    // A definition may say its node with the namespace, in a file of this or of none.
+    const std::string whole = plain ? fmt::format("{}:{}", space, name) : std::string(name);
+    add(whole, {});
+    add(whole, space);
+    add(withoutNamespace(name), space);
+  }
+  if (plain) add(name, {});
+  return found;
 }
 
-/// The namespace that the definitions of a node are in; empty where its name alone says which they are.
-std::string_view Patterns::spaceOf(std::string_view category) const {
-  if (definitions_of_.contains(category)) return {};
-  const size_t colon = category.rfind(':');
-  return colon == std::string_view::npos ? std::string_view() : category.substr(0, colon);
+/// The definition that a node names itself, which may be of any namespace; null for none.
+const Element* Patterns::definitionNamed(const Element& node) const {
+  const std::string_view wanted = node.get("nodedef");
+  const Element* named = findNamed(nodedefs_, wanted);
+  for (const std::string_view name : {std::string_view(node.category), withoutNamespace(node.category)}) {
+    const auto of = definitions_of_.find(name);
+    if (of == definitions_of_.end()) continue;
+    for (const size_t place : of->second) {
+      const Element& nodedef = *definitions_[place].nodedef;
+      const bool is = nodedef.name() == (named == nullptr ? wanted : named->name());
+      if (is && !definitions_[place].model) return &nodedef;
+    }
+  }
+  return nullptr;
 }
 
 /// The definitions that fit a node: of its namespace, types and version.
@@ -196,18 +223,17 @@ std::vector<const Element*> Patterns::definitionsOf(const Element& node) const {
     }
     return type;
   };
-  const std::string_view category = node.category;
-  const std::vector<size_t>* of = definitionsCalled(category);
-  if (of == nullptr) return found;
-  const std::string_view space = spaceOf(category);
-  for (const size_t place : *of) {
+  if (!node.get("nodedef").empty()) {
+    if (const Element* named = definitionNamed(node)) found.push_back(named);
+    return found;
+  }
+  std::string_view space;
+  for (const size_t place : definitionsCalled(node)) {
     const Element& nodedef = *definitions_[place].nodedef;
-    if (definitions_[place].model || (!space.empty() && nodedef.get("namespace") != space)) continue;
-    if (const std::string_view wanted = node.get("nodedef"); !wanted.empty()) {
-      const Element* named = findNamed(nodedefs_, wanted);
-      if (nodedef.name() == (named == nullptr ? wanted : named->name())) return {&nodedef};
-      continue;
-    }
+    if (definitions_[place].model) continue;
+    // Where one of the node's own namespace fits, those without a namespace are others.
+    if (!found.empty() && nodedef.get("namespace") != space) break;
+    space = nodedef.get("namespace");
     if (!node.get("type").empty() && outputOf(nodedef) != node.get("type")) continue;
     if (!node.get("version").empty() && !isOneVersion(nodedef.get("version"), node.get("version"))) continue;
     const bool fits = std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {

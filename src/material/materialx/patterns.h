@@ -138,8 +138,8 @@ private:
   void findFlaws();
   void checkDefinition(const Element& nodedef);
   void tellWarnings();
-  const std::vector<size_t>* definitionsCalled(std::string_view category) const;
-  std::string_view spaceOf(std::string_view category) const;
+  std::vector<size_t> definitionsCalled(const Element& node) const;
+  const Element* definitionNamed(const Element& node) const;
   std::vector<const Element*> definitionsOf(const Element& node) const;
   const Element* innermost(const Element& surface);
   void checkVersion(const Element& node);

@@ -82,18 +82,20 @@ void writeValue(std::string_view value, std::string& text) {
   }
 }
 
-/// `space`: the document's namespace, which its definitions have without saying it.
+/// `space`: the namespace around the element, which it has without saying it.
 void writeElement(const Element& element, size_t depth, std::string_view space, std::string& text) {
   text.append(2 * depth, ' ').append("<").append(element.category);
   for (const auto& [name, value] : element.attributes) {
-    if (depth == 1 && name == "namespace" && value == space) continue;
+    if (depth > 0 && name == "namespace" && value == space) continue;
     text.append(" ").append(name).append("=\"");
     writeValue(value, text);
     text += '"';
   }
   if (element.children.empty()) return void(text += "/>\n");
   text += ">\n";
-  for (const Element& child : element.children) writeElement(child, depth + 1, space, text);
+  const std::string* own = element.find("namespace");
+  for (const Element& child : element.children)
+    writeElement(child, depth + 1, own == nullptr ? space : *own, text);
   text.append(2 * depth, ' ').append("</").append(element.category).append(">\n");
 }
 

@@ -6,6 +6,8 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mtlx/looks.h"
@@ -43,9 +45,12 @@ private:
   std::string meant(std::string_view name, std::string_view space) const;
   void references(Element& element, const KnownNames* graph, std::string_view space) const;
 
+  void mark(Element& element, const std::string& space) const;
+
   Element& root_;
   const std::string top_;
   KnownNames known_;
+  std::set<std::pair<std::string_view, std::string_view>> nodes_;  ///< namespaces, and nodes defined in them
 };
 
 /// The name of what a reference within a namespace names.
@@ -89,6 +94,15 @@ void NameQualifier::references(Element& element, const KnownNames* graph, std::s
   }
 }
 
+/// Says at the nodes of a nodegraph in which namespace they stand.
+void NameQualifier::mark(Element& element, const std::string& space) const {
+  for (Element& child : element.children) {
+    if (!isNodeElement(child)) continue;
+    child.set("namespace", space);
+    mark(child, space);
+  }
+}
+
 void NameQualifier::all() {
   const auto of = [&](const Element& element) -> std::string {
     const std::string_view space = element.get("namespace");
@@ -105,11 +119,18 @@ void NameQualifier::all() {
         !child.name().starts_with(prefix))
       child.set("name", prefix + std::string(child.name()));
     known_.emplace(child.name());
+    if (child.category == "nodedef")
+      nodes_.emplace(child.get("namespace"), withoutNamespace(child.get("node")));
   }
   for (size_t i = 0; i < root_.children.size(); ++i) {
     Element& child = root_.children[i];
     references(child, nullptr, spaces[i]);
-    if (child.category == "nodedef" || child.category == "nodegraph") continue;
+    const std::string space(child.get("namespace"));
+    if (child.category == "nodegraph" && !space.empty()) mark(child, space);
+    // A node beside the nodegraphs may be one that its namespace defines.
+    const bool own = !space.empty() && isNodeElement(child) &&
+                     (space == top_ || nodes_.contains({space, std::string_view(child.category)}));
+    if (child.category == "nodedef" || child.category == "nodegraph" || own) continue;
     std::erase_if(child.attributes, [](const auto& one) { return one.first == "namespace"; });
   }
 }
