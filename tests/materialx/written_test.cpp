@@ -122,18 +122,17 @@ TEST(WrittenSpecular, keepsBothReflections) {
     return writtenOf(documentOf(fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [{{
                       "pbrMetallicRoughness": {{"metallicFactor": {}}}, "extensions": {{
                       "KHR_materials_coat": {{"coatFactor": 1}},
-                      "KHR_materials_specular": {{"specularFactor": 0.8, "specularColorFactor": {}}}}}}}]}})",
+                      "KHR_materials_specular": {{"specularFactor": 0.75, "specularColorFactor": {}}}}}}}]}})",
                                             metallic, color),
                                 "specular.gltf"));
   };
   const exchange::Written bright = writtenAs("0", "[0.75, 1.5, 0.375]");
-  EXPECT_EQ(allOf(bright.said), "");
   const auto has = [](const std::string& text, std::string_view part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_TRUE(has(bright.text, R"(name="specular_weight" type="float" value="1.5")")) << bright.text;
-  EXPECT_TRUE(has(bright.text, R"(name="specular_color" type="color3" value="0.4, 0.8, 0.2")"))
-      << bright.text;
+  EXPECT_TRUE(has(allOf(bright.said), "more at grazing angles")) << allOf(bright.said);
+  EXPECT_TRUE(has(bright.text, R"(name="specular_weight" type="float" value="1.125")")) << bright.text;
+  EXPECT_TRUE(has(bright.text, R"(name="specular_color" type="color3" value="0.5, 1, 0.25")")) << bright.text;
   const material::Document again = documentOf(bright.text, "specular.mtlx");
   EXPECT_EQ(allOf(writtenOf(again).said), "");
   EXPECT_EQ(writtenOf(again).text, bright.text);
@@ -151,6 +150,39 @@ TEST(WrittenSpecular, keepsBothReflections) {
   EXPECT_TRUE(has(none.text, R"(name="specular_weight" type="float" value="0")")) << none.text;
   EXPECT_FALSE(has(none.text, "specular_color")) << none.text;
   EXPECT_EQ(writtenOf(documentOf(none.text, "none.mtlx")).text, none.text);
+}
+
+/// What a boundary reflects straight on is the same, and what lies below has the rest: a weight of 25 with a
+/// color of 0.04 would reflect as little as it should, and leave nothing to the base.
+TEST(WrittenSpecular, leavesTheBaseItsLight) {
+  const auto writtenAs = [](std::string_view inputs, std::string_view category) {
+    const material::Document document =
+        documentOf(fmt::format(R"(<?xml version="1.0"?><materialx version="1.39">
+      <{0} name="s" type="surfaceshader">{1}</{0}><surfacematerial name="m" type="material">
+      <input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial></materialx>)",
+                               category, inputs),
+                   "specular.mtlx");
+    return exchange::toMaterialX(document, {0}, builtInSchema(), "open_pbr_surface");
+  };
+  const auto has = [](const exchange::Written& written, std::string_view input, std::string_view value) {
+    return written.text.find(fmt::format(R"(<input name="{}" type="{}" value="{}"/>)", input,
+                                         input == "specular_color" ? "color3" : "float", value)) !=
+           std::string::npos;
+  };
+  const auto disney = writtenAs(R"(<input name="baseColor" type="color3" value="0.1, 0.2, 0.8"/>
+      <input name="specular" type="float" value="0.25"/>
+      <input name="ior" type="float" value="3"/>)",
+                                "disney_principled");
+  EXPECT_TRUE(has(disney, "specular_color", "0.08, 0.08, 0.08")) << disney.text;
+  EXPECT_EQ(disney.text.find("specular_weight"), std::string::npos) << disney.text;
+  EXPECT_NE(allOf(disney.said).find("more at grazing angles"), std::string::npos) << allOf(disney.said);
+  const auto half = writtenAs(R"(<input name="specular" type="float" value="0.5"/>
+      <input name="specular_color" type="color3" value="1, 2, 100"/>
+      <input name="ior" type="float" value="3"/><input name="metallic" type="float" value="0"/>)",
+                              "gltf_pbr");
+  // 0.25 times 100 is more than all light.
+  EXPECT_TRUE(has(half, "specular_weight", "2")) << half.text;
+  EXPECT_TRUE(has(half, "specular_color", "0.25, 0.5, 1")) << half.text;
 }
 
 /// The base has its weight however little passes through.

@@ -154,9 +154,12 @@ private:
   void bumped(std::string_view input);
   void occlusion();
   void film(std::string_view input, double scale);
+  bool isMetal(double by) const;
   void tintedSpecular();
+  void brightSpecular(double factor, Components color);
   Source brightestOf(const Source& color);
   void brightMetal();
+  void brightGrazing();
   void emission();
   void gltfPbr();
   void openPbr();
@@ -543,29 +546,35 @@ void Translation::gltfPbr() {
     put("alpha_cutoff", "float", *cutoff);
 }
 
+/// Whether the surface is metal by that share, whatever its texels are.
+bool Translation::isMetal(double by) const {
+  const auto metalness = std::find_if(out_.inputs.begin(), out_.inputs.end(),
+                                      [](const auto& one) { return one.name == "base_metalness"; });
+  if (metalness == out_.inputs.end()) return false;
+  const auto* number = metalness->source ? std::get_if<graph::Literal>(&metalness->source->from) : nullptr;
+  if (metalness->source && number == nullptr) return false;
+  return (number == nullptr ? metalness->value : number->value)[0] == by;
+}
+
 /// glTF's factor is the reflection at grazing angles, and its color straight on is a share of it. OpenPBR's
-/// color tints all angles, and its weight counts straight on: it takes the brightest of the color.
+/// color, up to 1, tints all angles, and its weight counts straight on: it takes the brightest of the color.
 void Translation::tintedSpecular() {
   const Components* given_factor = number(EXT "specular/specularFactor");
   const Components* given_color = number(EXT "specular/specularColorFactor");
   const auto* factor_map = texture(EXT "specular/specularTexture");
   const auto* color_map = texture(EXT "specular/specularColorTexture");
-  const Components factor = given_factor == nullptr ? Components{1} : *given_factor;
+  const double factor = given_factor == nullptr ? 1 : (*given_factor)[0];
   Components color = given_color == nullptr ? Components{1, 1, 1} : *given_color;
-  const bool neutral = factor[0] == 1 && color[0] == 1 && color[1] == 1 && color[2] == 1;
-  const auto metalness = std::find_if(out_.inputs.begin(), out_.inputs.end(),
-                                      [](const auto& one) { return one.name == "base_metalness"; });
-  const auto isMetal = [&](double by) {
-    if (metalness == out_.inputs.end()) return false;
-    const auto* number = metalness->source ? std::get_if<graph::Literal>(&metalness->source->from) : nullptr;
-    if (metalness->source && number == nullptr) return false;
-    return (number == nullptr ? metalness->value : number->value)[0] == by;
-  };
+  const double most = std::max({color[0], color[1], color[2]});
+  const bool neutral = factor == 1 && color[0] == 1 && color[1] == 1 && color[2] == 1;
   // glTF's metals do not take it.
   if (isMetal(1) || (neutral && factor_map == nullptr && color_map == nullptr)) return;
   if (!isMetal(0)) brightMetal();
   // Nothing is reflected, and nothing taken from what lies below.
-  if (factor[0] == 0) return put("specular_weight", "float", {0});
+  if (factor == 0) return put("specular_weight", "float", {0});
+  // An image's texels are up to 1, those of a pattern are any.
+  const bool pattern = color_map != nullptr && !color_map->info.group.empty();
+  if (most > 1 || (pattern && (factor < 1 || factor_map != nullptr))) return brightSpecular(factor, color);
   std::optional<Source> tint;
   if (color_map != nullptr) tint = times(channel(*color_map, 4), color, 3);
   if (tint) {
@@ -573,12 +582,11 @@ void Translation::tintedSpecular() {
     put("specular_weight", "float", {}, brightest);
     tint = add("specular_tint", "divide<vec3>",
                {{"in1", *tint}, {"in2", graph::widened(brightest, ir::Type::Vec3)}});
-    color = {factor[0], factor[0], factor[0]};
+    color = {factor, factor, factor};
   } else {
-    const double brightest = color_map != nullptr ? 0 : std::max({color[0], color[1], color[2]});
+    const double brightest = color_map != nullptr ? 0 : most;
     if (brightest != 1) put("specular_weight", "float", {brightest});
-    for (int i = 0; i < 3; ++i)
-      color[static_cast<size_t>(i)] *= brightest > 0 ? factor[0] / brightest : factor[0];
+    for (int i = 0; i < 3; ++i) color[static_cast<size_t>(i)] *= brightest > 0 ? factor / brightest : factor;
   }
   if (factor_map != nullptr) {
     Source all = graph::widened(channel(*factor_map, 3), ir::Type::Vec3);
@@ -586,6 +594,46 @@ void Translation::tintedSpecular() {
   }
   if (tint) tint = times(*tint, color, 3);
   put("specular_color", "color3", tint ? Components{} : color, std::move(tint));
+}
+
+/// A color brighter than 1 with a factor below it: OpenPBR would take of the base what the weight reflects,
+/// however dark the color makes that. The weight is above 1 only where the factor leaves it so.
+void Translation::brightSpecular(double factor, Components color) {
+  const auto* factor_map = texture(EXT "specular/specularTexture");
+  const auto* color_map = texture(EXT "specular/specularColorTexture");
+  // The color counts as far as a boundary can reflect.
+  const double ior = numberOr(EXT "ior/ior", 1.5);
+  const double root = (ior - 1) / (ior + 1);
+  const double bound = 1 / std::max(root * root, 1e-6);
+  if (factor_map == nullptr && color_map == nullptr) {
+    double brightest = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      color[i] = std::min(color[i], bound);
+      brightest = std::max(brightest, color[i]);
+    }
+    const double weight = std::max(std::min(brightest, 1.0), factor * brightest);
+    for (size_t i = 0; i < 3; ++i) color[i] *= factor / weight;
+    if (weight != 1) put("specular_weight", "float", {weight});
+    if (factor < 1) brightGrazing();
+    return put("specular_color", "color3", color);
+  }
+  const auto number = [](double x) { return Source{graph::Literal{ir::Type::Float, {x}}, {}}; };
+  Source tint{graph::Literal{ir::Type::Vec3, color}, {}};
+  if (color_map != nullptr) tint = *times(channel(*color_map, 4), color, 3);
+  tint = add("specular_limited", "min<vec3>",
+             {{"in1", tint}, {"in2", Source{graph::Literal{ir::Type::Vec3, {bound, bound, bound}}, {}}}});
+  std::optional<Source> factors = number(factor);
+  if (factor_map != nullptr) factors = times(channel(*factor_map, 3), {factor}, 1);
+  const Source brightest = brightestOf(tint);
+  const Source least = add("specular_least", "min<float>", {{"in1", brightest}, {"in2", number(1)}});
+  const Source all = add("specular_all", "multiply<float>", {{"in1", brightest}, {"in2", *factors}});
+  const Source weight = add("specular_weight", "max<float>", {{"in1", least}, {"in2", all}});
+  const Source share = add("specular_share", "divide<float>", {{"in1", *factors}, {"in2", weight}});
+  put("specular_weight", "float", {}, weight);
+  put("specular_color", "color3", {},
+      add("specular_tint", "multiply<vec3>",
+          {{"in1", tint}, {"in2", graph::widened(share, ir::Type::Vec3)}}));
+  if (factor < 1 || factor_map != nullptr) brightGrazing();
 }
 
 /// The brightest channel of a color, and so much that one can divide by it.
@@ -609,6 +657,15 @@ void Translation::brightMetal() {
               "OpenPBR's specular_weight and specular_color change metals, too",
               "where the metal shows, it is darker or brighter than in glTF: gltf_pbr says the same as glTF",
               {}});
+}
+
+void Translation::brightGrazing() {
+  addBounded(said_, {"not-said",
+                     Severity::Warning,
+                     {document_.path, 0, 0, fmt::format("/materials/{}/{}", material_.index, EXT "specular")},
+                     "OpenPBR reflects more at grazing angles than a specularFactor below 1 says",
+                     "straight on it reflects the same: gltf_pbr says the same at all angles",
+                     {}});
 }
 
 void Translation::openPbr() {
