@@ -9,6 +9,7 @@
 
 #include <pugixml.hpp>
 
+#include "lang/suggest.h"
 #include "mtlx/element.h"
 #include "mtlx/inheritance.h"
 #include "mtlx/looks.h"
@@ -85,6 +86,35 @@ void nameOnlyOutputs(Element& root) {
   }
 }
 
+/// Says which children of nodes and of definitions are none that these have: nobody reads them.
+void tellUnknown(const Element& scope, Diagnostics& said) {
+  constexpr std::string_view kPorts[] = {"input", "output", "token"};
+  for (const Element& node : scope.children) {
+    if (node.category == "nodegraph") {
+      tellUnknown(node, said);
+      continue;
+    }
+    // What is for other applications may have any children; it has no type.
+    const bool definition = node.category == "nodedef";
+    if (!definition && (!isNodeElement(node) || node.get("type").empty())) continue;
+    for (const Element& child : node.children) {
+      if (child.category == "comment" ||
+          std::find(std::begin(kPorts), std::end(kPorts), child.category) != std::end(kPorts))
+        continue;
+      const std::string known = fmt::format("it has {}", listOf(kPorts));
+      addBounded(said,
+                 {"unknown-element",
+                  Severity::Warning,
+                  child.place,
+                  fmt::format("the {} {} has no {}, which is left out", node.category, quote(node.name()),
+                              quote(child.category)),
+                  child.category == "parameter" ? std::string("since MaterialX 1.38 it is called 'input'")
+                                                : lang::didYouMean(child.category, kPorts, known),
+                  {}});
+    }
+  }
+}
+
 /// What inputs have of the elements around them.
 struct Inherited {
   std::string colorspace, fileprefix, geomprefix;
@@ -105,6 +135,7 @@ public:
     if (!hasError(wrong_) && includes_) inheritNodes(document.root, wrong_);
     if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
     nameOnlyOutputs(document.root);
+    tellUnknown(document.root, wrong_);
     document.files = std::move(files_);
     document.said = std::move(wrong_);
     return document;
