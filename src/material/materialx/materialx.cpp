@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <tuple>
 
 #include "materialx/closures.h"
@@ -68,6 +69,7 @@ private:
   struct Found {
     const Element* shader = nullptr;
     const Element* owner = nullptr;
+    std::optional<Diagnostic> wrong = {};
   };
 
   Found shaderOf(const Element& material);
@@ -105,6 +107,8 @@ MaterialsReader::Found MaterialsReader::shaderOf(const Element& material) {
   const Element* found = nodegraph == nullptr ? node(root, in->get("nodename")) : nullptr;
   if (found != nullptr && found->category == "nodegraph") graph = std::exchange(found, nullptr);
   if (graph == nullptr) return {found, &root};
+  if (const auto outputs = outputsOf(*graph); outputs.size() > 1 && in->get("output").empty())
+    return {nullptr, &root, unnamedOutput(*in, graph->name(), outputs)};
   for (const Element& output : graph->children) {
     const bool wanted =
         output.category == "output" && (in->get("output").empty() || output.name() == in->get("output"));
@@ -127,7 +131,9 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   };
   made.json = Json::object();
   made.json["name"] = Json(name);
-  if (found.shader == nullptr) {
+  if (found.wrong) {
+    made.said.push_back(*found.wrong);
+  } else if (found.shader == nullptr) {
     wrong(at, "no-such-node", fmt::format("the material {} has no surface", quote(name)),
           "its input surfaceshader names one");
   } else if (const std::string_view type = found.shader->get("type");

@@ -8,6 +8,7 @@
 #include "lang/suggest.h"
 #include "materialx/closures.h"
 #include "materialx/patterns.h"
+#include "materialx/surface.h"
 #include "mtlx/looks.h"
 #include "support/say_once.h"
 #include "support/text.h"
@@ -157,6 +158,32 @@ void Patterns::checkDeclared(const Element& nodedef, const Element& graph, std::
         fmt::format("the output {} is of the type {}", quote(name), quote(output->get("type"))),
         fmt::format("its definition {} in {}:{} says {}", quote(nodedef.name()), port->place.file,
                     port->place.line, quote(port->get("type"))));
+}
+
+std::vector<std::string_view> outputsOf(const Element& interface) {
+  std::vector<std::string_view> outputs;
+  for (const Element& port : interface.children)
+    if (port.category == "output" && port.find(kMadeOutput) == nullptr) outputs.push_back(port.name());
+  return outputs;
+}
+
+Diagnostic unnamedOutput(const Element& at, std::string_view name,
+                         std::span<const std::string_view> outputs) {
+  return {"unknown-output",
+          Severity::Error,
+          at.place,
+          fmt::format("{} has several outputs, and {} names none of them", quote(name), quote(at.name())),
+          fmt::format("its attribute \"output\" does: {}", listOf(outputs, "or")),
+          {}};
+}
+
+/// Whether an input names one of several outputs of what it is connected to.
+bool Patterns::namesOutput(const Element& input, const Referred& referred,
+                           std::span<const std::string_view> outputs) {
+  if (!referred.output.empty() || referred.element == &input || outputs.size() < 2) return true;
+  const Diagnostic one = unnamedOutput(input, referred.element->name(), outputs);
+  error(input, one.code, one.message, one.help);
+  return false;
 }
 
 /// The name of the output of a nodegraph or a definition that is meant: of one output that, whatever it is

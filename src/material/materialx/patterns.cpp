@@ -522,6 +522,12 @@ const Element* aliased(const Element& node) {
   return from && from == typeOf(node.get("type")) ? in : nullptr;
 }
 
+std::vector<std::string_view> resultsOf(const lang::NodeDecl& form) {
+  std::vector<std::string_view> names;
+  for (const auto& result : form.results) names.push_back(result.name);
+  return names;
+}
+
 }  // namespace
 
 /// Whether an input takes a closure of the kind that it is connected to.
@@ -581,6 +587,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
   const Element* interface = element.category == "nodegraph" ? &element : definitionFor(scope, element);
   std::string output;
   if (interface != nullptr) {
+    if (!namesOutput(input, referred, outputsOf(*interface))) return std::nullopt;
     const std::string_view only = outputNameOf(*interface, referred.output);
     output = graphName(only);
     if (!referred.part.empty()) output += "_" + referred.part;
@@ -594,6 +601,8 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
     const std::optional<std::vector<double>> place = number == nullptr ? std::nullopt : numbersOf(*number);
     if (results > 1 && place && (*place)[0] >= 0 && (*place)[0] < static_cast<double>(results))
       output = forms[0]->results[static_cast<size_t>((*place)[0])].name;
+    else if (results > 1 && referred.part.empty() && !namesOutput(input, referred, resultsOf(*forms[0])))
+      return std::nullopt;
     else if (results > 1)
       output = referred.part.empty() ? referred.output : referred.part;
   }

@@ -38,6 +38,11 @@ struct PatternOptions {
 /// something of the file is used.
 inline constexpr std::string_view kWarning = "said:warning";
 
+/// The error of a connection that names none of the outputs of what it is connected to.
+Diagnostic unnamedOutput(const Element& at, std::string_view name, std::span<const std::string_view> outputs);
+/// The names of a nodegraph's or a definition's outputs.
+std::vector<std::string_view> outputsOf(const Element& interface);
+
 enum class Alpha : uint8_t { Opaque, Mask, Blend };
 
 /// The nodes of one body while it is made: of a group, whose elements stand beside each other.
@@ -200,6 +205,7 @@ private:
   bool goesToTiles(const Element& owner, std::string_view name) const;
   void withoutGraph(const Element& at, const Element& nodedef);
   void checkDeclared(const Element& nodedef, const Element& graph, std::string_view name);
+  bool namesOutput(const Element& input, const Referred& referred, std::span<const std::string_view> outputs);
   static std::string_view outputNameOf(const Element& interface, std::string_view name);
   std::string_view givenType(const Scope& scope, const Element& port) const;
   void checkPort(const Scope& scope, const Element& port);

@@ -54,6 +54,7 @@ void addTangentSpace(Element& document) {
       Element& made = more.emplace_back(*in);
       made.category = "output";
       made.set("name", std::string(output.name()) + std::string(kTangentSpace));
+      made.set(kMadeOutput, "true");
     }
     for (Element& one : more) graph.children.push_back(std::move(one));
   }

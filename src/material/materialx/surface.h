@@ -110,6 +110,8 @@ double translationError(std::string_view category);
 /// The surfaces that there is one for.
 std::vector<std::string_view> translated();
 
+/// The attribute of outputs that addTangentSpace() adds to a nodegraph: no connection means them.
+inline constexpr std::string_view kMadeOutput = "made_output";
 /// Gives a nodegraph an output in tangent space beside each that is a normal map's, for Surface::normal().
 void addTangentSpace(Element& document);
 
