@@ -42,6 +42,11 @@ bool samplesFile(const Element& node) {
   });
 }
 
+bool samples(const lang::NodeDecl& form) {
+  return std::any_of(form.params.begin(), form.params.end(),
+                     [](const lang::Param& param) { return ir::isTexture(param.type); });
+}
+
 const lang::Param* paramOf(const lang::NodeDecl& form, std::string_view name) {
   const auto it = std::find_if(form.params.begin(), form.params.end(),
                                [&](const lang::Param& p) { return p.name == name; });
@@ -64,7 +69,7 @@ bool takes(const lang::NodeDecl& form, const Element& node, bool types) {
     const lang::Param* param = paramOf(form, input.name());
     if (param == nullptr)
       return isBeside(input.name()) || isIgnored(node, input.name()) ||
-             (isFallback(input.name()) && samplesFile(node));
+             (isFallback(input.name()) && samples(form));
     const std::optional<ir::Type> type = typeOf(input.get("type"));
     // Channels of MaterialX 1.38 make another type of what is connected.
     const bool image = type && ir::isTexture(*type) && ir::isTexture(param->type);
