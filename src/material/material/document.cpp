@@ -164,6 +164,8 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i)
     needed = needed || (*required)[i] == Json("KHR_texture_procedurals");
   materialx::ProceduralOptions how{options.limits, needed, {}, namesOf(schema), schema.definitions};
+  if (const Json* textures = json::member(root, "textures"); textures != nullptr && textures->is_array())
+    how.textures = textures->size();
   for (const gltf::AnimatedPointer& pointer : document.animated) how.animated.insert(wholePointer(pointer));
   materialx::Procedurals made =
       materialx::readProcedurals(*found, document.path, *schema.library, how, document.diagnostics);

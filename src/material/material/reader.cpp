@@ -303,30 +303,40 @@ void MaterialReader::transform(const Json& json, const Path& path) {
   info.transform = out;
 }
 
-/// What computes the texel in the texture's place. Where that cannot be, the texture is taken.
+/// What computes the texel in the texture's place. Where that cannot be, the texture is taken; it is an error
+/// where the file requires the extension.
 void MaterialReader::procedural(const Json& json, const Path& path) {
-  if (!json.is_object()) return report_.wrongType(path, kProcedurals, json, "an object");
   const std::vector<materialx::Procedural>& list = file_.procedurals->list;
-  const auto fallback = [&](const Path& at, std::string message, std::string help = {}) {
-    report_.warning("procedural-fallback", at, std::move(message), std::move(help));
+  const auto fallback = [&](const Path& at, std::string message, const std::string& help = {}) {
+    const std::string taken = help.empty() ? "the texture is taken" : help + ": the texture is taken";
+    if (file_.procedurals->required)
+      report_.error("procedural-fallback", at, std::move(message), help);
+    else
+      report_.warning("procedural-fallback", at, std::move(message), taken);
   };
-  int index = -1;
+  if (!json.is_object())
+    return fallback(path, fmt::format("{} is {}", kProcedurals, json::describe(json)),
+                    "it must be an object");
   const Json* number = member(json, "index");
-  if (number == nullptr)
-    return fallback(path, fmt::format("{} has no \"index\"", kProcedurals), "the texture is taken");
-  if (!report_.index(Path(path, "index"), "index", *number, list.size(), "procedural", index)) return;
-  const materialx::Procedural& one = list[static_cast<size_t>(index)];
+  if (number == nullptr) return fallback(path, fmt::format("{} has no \"index\"", kProcedurals));
+  const bool whole = number->is_number_unsigned();
+  if (!whole || number->get<uint64_t>() >= list.size())
+    return fallback(Path(path, "index"),
+                    number->is_number() ? fmt::format("there is no procedural {}", printable(number->dump()))
+                                        : fmt::format("index is {}", json::describe(*number)),
+                    fmt::format("the file has {}", countOf(list.size(), "procedural")));
+  const auto index = static_cast<size_t>(number->get<uint64_t>());
+  const materialx::Procedural& one = list[index];
   const Json* named = member(json, "output");
   const std::string wanted = named != nullptr && named->is_string() ? named->text() : std::string();
-  if (one.wrong)
-    return fallback(path, fmt::format("the procedural {} is wrong", index), "the texture is taken");
+  // Its own error says so, too.
+  if (one.wrong) return fallback(path, fmt::format("the procedural {} is wrong", index));
   const std::string_view output = one.output(wanted);
   if (output.empty()) {
     std::vector<std::string_view> names;
     for (const auto& [name, group] : one.outputs) names.push_back(name);
     return fallback(path, fmt::format("the procedural {} has no output {}", index, quote(wanted)),
-                    names.empty() ? "it has none: the texture is taken"
-                                  : fmt::format("it has {}: the texture is taken", listOf(names)));
+                    names.empty() ? "it has none" : fmt::format("it has {}", listOf(names)));
   }
   texture_->group = one.group;
   texture_->output = output;

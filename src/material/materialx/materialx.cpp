@@ -400,11 +400,12 @@ Procedurals readProcedurals(const Json& extension, const std::string& path, cons
   Diagnostics wrong;
   Element root;
   root.category = "materialx";
-  root.children = readProcedurals(extension, path, options.limits, wrong);
+  root.children = readProcedurals(extension, path, options.limits, options.textures, wrong);
   Patterns patterns({&root}, library,
                     {false, options.limits.nodes, options.animated, options.reserved, false, nullptr,
                      options.definitions.get()});
   Procedurals made;
+  made.required = options.required;
   std::vector<Scope*> scopes;
   for (const Element& graph : root.children) {
     Procedural& one = made.list.emplace_back();

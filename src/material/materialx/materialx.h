@@ -30,6 +30,7 @@ struct Procedural {
 
 struct Procedurals {
   std::vector<Procedural> list;
+  bool required = false;  ///< by the file: what names none of them is an error
   /// Groups, parameters and textures; null where there are none.
   std::shared_ptr<const graph::Graph> patterns;
 };
@@ -98,6 +99,7 @@ struct ProceduralOptions {
   Names animated{};  ///< JSON pointers of what animations change
   Names reserved{};
   Definitions definitions = {};
+  size_t textures = 0;  ///< of the file
 };
 
 /// Of a glTF file's extension KHR_texture_procedurals: one for each entry of `procedurals`. What is wrong

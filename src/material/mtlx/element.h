@@ -67,9 +67,9 @@ Result<Document> readXmlAlone(std::string_view text, const std::string& path, co
 
 /// The `procedurals` of the extension KHR_texture_procedurals as elements: a `nodegraph` for each, in their
 /// order, and what is in `procedural_definitions` behind them. Places have JSON pointers. What is wrong with
-/// one goes to `wrong`, with its pointer, and its element is empty then.
+/// one goes to `wrong`, with its pointer, and its element is empty then. `textures`: how many the file has.
 std::vector<Element> readProcedurals(const json::Json& extension, const std::string& path,
-                                     const Limits& limits, Diagnostics& wrong);
+                                     const Limits& limits, size_t textures, Diagnostics& wrong);
 
 /// A document as XML, two spaces of indent, a final newline. Categories and names of attributes are names;
 /// values may be any text.

@@ -18,8 +18,8 @@ using json::Path;
 /// by name or by number, one number alone or in an array.
 class ProceduralReader {
 public:
-  ProceduralReader(const std::string& path, const Limits& limits, Diagnostics& wrong)
-      : path_(path), limits_(limits), wrong_(wrong) {}
+  ProceduralReader(const std::string& path, const Limits& limits, size_t textures, Diagnostics& wrong)
+      : path_(path), limits_(limits), textures_(textures), wrong_(wrong) {}
 
   Element graph(const Json& json, const Path& path, bool definition);
 
@@ -45,6 +45,7 @@ private:
 
   const std::string& path_;
   const Limits& limits_;
+  const size_t textures_;
   Diagnostics& wrong_;
   std::vector<std::string> nodes_, inputs_;  ///< names by number
 };
@@ -134,6 +135,10 @@ bool ProceduralReader::port(const Json& json, std::string_view name, const Path&
     if (!texture->is_number_unsigned() && !texture->is_number_integer())
       return fails(Path(path, "texture"), "wrong-type",
                    fmt::format("texture is {}", json::describe(*texture)), "it is the number of a texture");
+    if (!texture->is_number_unsigned() || texture->get<uint64_t>() >= textures_)
+      return fails(Path(path, "texture"), "wrong-reference",
+                   fmt::format("there is no texture {}", printable(texture->dump())),
+                   fmt::format("the file has {}", textures_));
     port.set("texture", texture->dump());
   }
   if (!reference(json, path, "node", "nodename", nodes_, port)) return false;
@@ -219,7 +224,7 @@ Element ProceduralReader::graph(const Json& json, const Path& path, bool definit
 }  // namespace
 
 std::vector<Element> readProcedurals(const Json& extension, const std::string& path, const Limits& limits,
-                                     Diagnostics& wrong) {
+                                     size_t textures, Diagnostics& wrong) {
   std::vector<Element> graphs;
   const Path root;
   const Path extensions(root, "extensions");
@@ -236,7 +241,7 @@ std::vector<Element> readProcedurals(const Json& extension, const std::string& p
   }
   const Path all(own, "procedurals");
   for (size_t i = 0; i < list->size(); ++i)
-    graphs.push_back(ProceduralReader(path, limits, wrong).graph((*list)[i], Path(all, i), false));
+    graphs.push_back(ProceduralReader(path, limits, textures, wrong).graph((*list)[i], Path(all, i), false));
   return graphs;
 }
 
