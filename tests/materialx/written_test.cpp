@@ -16,6 +16,7 @@
 
 #include "exchange/exchange.h"
 #include "exchange/procedurals_out.h"
+#include "exchange/translation.h"
 #include "graph/graph.h"
 #include "material/material.h"
 #include "mtlx/element.h"
@@ -198,6 +199,30 @@ TEST(WrittenSpecular, leavesTheWeightOfABaseThatLightPasses) {
   EXPECT_NE(written.text.find(R"(name="base_color" type="color3" value="0.55, 0.4, 0.325")"),
             std::string::npos)
       << written.text;
+}
+
+/// A colour's opacity, where the new surface has a number for it.
+TEST(Translated, opacitiesThatAreColoursAreLost) {
+  const auto lost = [](std::string_view opacity, std::string_view as) {
+    const Result<materialx::Document> document = materialx::readXml(
+        fmt::format(R"(<materialx version="1.39"><standard_surface name="s" type="surfaceshader">
+<input name="opacity" type="color3" {}/></standard_surface></materialx>)",
+                    opacity),
+        "opacity.mtlx", Limits{});
+    EXPECT_TRUE(document);
+    materialx::Element root = document->root;
+    Diagnostics said;
+    EXPECT_EQ(exchange::translateSurfaces(root, as, said), 1u);
+    return allOf(said);
+  };
+  EXPECT_EQ(lost(R"(value="0.5, 0.5, 0.5")", "open_pbr_surface"), "");
+  EXPECT_EQ(
+      lost(R"(value="1, 0.5, 0.25")", "open_pbr_surface"),
+      "opacity.mtlx:2:2: warning: opacity is a colour, and the new surface's is a number: 1, 0.5, 0.25 is "
+      "lost [not-said]\n  help: its red is taken\n");
+  EXPECT_NE(lost(R"(value="1, 0.5, 0.25")", "gltf_pbr").find("its luminance is taken"), std::string::npos);
+  EXPECT_NE(lost(R"(nodename="image")", "open_pbr_surface").find("what it is connected to is lost"),
+            std::string::npos);
 }
 
 /// Definitions are read with their file's namespace, and are written without the document's.

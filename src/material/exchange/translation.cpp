@@ -176,6 +176,23 @@ public:
     return channel(add("luminance", "color3", {{"in", color}}), 0);
   }
 
+  /// The opacity, which is a colour, for a surface that has one number: `shown` says which is taken.
+  Term opacity(std::string_view shown) {
+    const Term color = get("opacity");
+    const Element* input = surface_.child("input", "opacity");
+    const bool grey = color.known() && color.value[0] == color.value[1] && color.value[0] == color.value[2];
+    if (input == nullptr || grey) return color;
+    addBounded(said_, {"not-said",
+                       Severity::Warning,
+                       input->place,
+                       fmt::format("opacity is a colour, and the new surface's is a number: {}",
+                                   color.known() ? printable(std::string(input->get("value"))) + " is lost"
+                                                 : "the colour of what it is connected to is lost"),
+                       fmt::format("its {} is taken", shown),
+                       {}});
+    return color;
+  }
+
   void put(std::string_view name, const Term& term, const std::optional<Term>& by_default = {}) {
     if (by_default) defaults_.emplace(name, inputOf(name, *by_default));
     if (by_default && term.known() && by_default->value == term.value) return;
@@ -354,7 +371,7 @@ void toOpenPbr(Formulas& f) {
   }
   f.put("emission_luminance", f.get("emission"), 0);
   f.put("emission_color", f.get("emission_color"), 1);
-  f.put("geometry_opacity", f.channel(f.get("opacity"), 0), 1);
+  f.put("geometry_opacity", f.channel(f.opacity("red"), 0), 1);
   f.put("geometry_thin_walled", f.get("thin_walled"), 0);
   f.pass("normal", "geometry_normal");
   f.pass("tangent", "geometry_tangent");
@@ -430,7 +447,7 @@ void toGltfPbr(Formulas& f) {
     f.put("emissive", emission_color, 0);
     f.put("emissive_strength", emission, 1);
   }
-  const Term alpha = f.luminance(f.get("opacity"));
+  const Term alpha = f.luminance(f.opacity("luminance"));
   // White sums to 1 but for the last bits.
   if (!alpha.known() || std::abs(alpha.value[0] - 1) > 1e-9) {
     f.put("alpha", alpha, 1);
