@@ -223,7 +223,11 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
 
 Result<Document> readDocument(std::string_view bytes, const std::string& name, const Schema& schema,
                               const ReadOptions& options) {
-  if (materialx::isXml(bytes)) return readMaterialX(bytes, name, schema, options);
+  // What is called a document, and is neither JSON nor a GLB, is one that does not begin as it should.
+  const size_t start = bytes.find_first_not_of(" \t\r\n");
+  const bool named = name.ends_with(".mtlx") && start != std::string_view::npos && bytes[start] != '{' &&
+                     !bytes.starts_with("glTF");
+  if (materialx::isXml(bytes) || named) return readMaterialX(bytes, name, schema, options);
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
   Document document;
