@@ -125,7 +125,9 @@ ir::Module moduleOf(const lang::Library& library, const std::string& node, doubl
   graph.textures.push_back(map);
   graph.add("loop", node, {{"map", {graph::TextureRef{"map"}, {}}}, {"uv", {graph::GivenRef{"uv0"}, {}}}});
   graph.attributes = {"TEXCOORD_0"};
-  graph.outputs.emplace_back("emission", graph::Source{graph::NodeRef{"loop", {}}, {}});
+  auto& [output, source] = graph.outputs.emplace_back();
+  output = "emission";
+  source.from = graph::NodeRef{"loop", {}};
   lower::LowerOptions options;
   options.loops.written_cycles = written_cycles;
   ir::Module module = checked(lower::lower(graph, library, options));
