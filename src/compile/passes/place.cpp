@@ -131,6 +131,8 @@ void chooseFields(ir::Module& module, Placement& placement) {
   ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0, ir::kMaterialBinding};
   ir::Names names;
   placement.field_of.resize(module.dag.size(), 0);
+  block.fields.reserve(values.size());
+  module.preshader.reserve(module.preshader.size() + values.size());
   for (const ir::ValueId id : values) {
     const auto field = static_cast<uint32_t>(block.fields.size());
     placement.field_of[id] = field;

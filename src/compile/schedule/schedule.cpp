@@ -23,6 +23,7 @@ public:
   }
   std::vector<uint32_t> ascending() const {
     std::vector<uint32_t> all;
+    all.reserve(has_.size());
     for (uint32_t i = 0; i < has_.size(); ++i) {
       if (has_[i]) all.push_back(i);
     }

@@ -76,6 +76,7 @@ void visitIds(Module& module, const Visit& visit) {
 
 std::vector<ValueId> roots(const Module& module) {
   std::vector<ValueId> ids;
+  ids.reserve(module.outputs.size() + module.varyings.size() + module.preshader.size());
   visitIds(module, [&](ValueId id) { ids.push_back(id); });
   return ids;
 }

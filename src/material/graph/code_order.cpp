@@ -102,6 +102,8 @@ private:
     std::vector<size_t> order;
     std::vector<bool> seen(graph_.nodes.size(), false);
     std::vector<Visit> path;
+    order.reserve(graph_.nodes.size());
+    path.reserve(graph_.nodes.size());
     const auto open = [&](size_t node) {
       if (seen[node]) return;
       seen[node] = true;
