@@ -276,6 +276,47 @@ TEST(Bake, ofAGraph) {
   EXPECT_NE(lit.err.find("[depends-on-view]"), std::string::npos) << lit.err;
 }
 
+/// In a document and in the glTF file that is made of it.
+TEST(Exchange, aMissingImageIsItsDefault) {
+  const Workplace place;
+  place.write("lost.mtlx", R"(<?xml version="1.0"?>
+<materialx version="1.39">
+  <nodegraph name="NG">
+    <image name="i" type="color3"><input name="file" type="filename" value="lost.png"/>
+      <input name="default" type="color3" value="0.2, 0.4, 0.6"/></image>
+    <output name="out" type="color3" nodename="i"/>
+  </nodegraph>
+</materialx>)");
+  place.write("points.json", "[{}]");
+  const Outcome written = place.run({"graph", "lost.mtlx", "--format", "gltf"});
+  ASSERT_EQ(written.status, 0) << written.err;
+  place.write("lost.gltf", written.out);
+  for (const char* file : {"lost.mtlx", "lost.gltf"}) {
+    const Outcome seen = place.run({"eval", file, "--points", "points.json"});
+    EXPECT_EQ(seen.status, 0) << seen.err;
+    EXPECT_NE(seen.err.find("lost.png\" cannot be read"), std::string::npos) << seen.err;
+    EXPECT_NE(seen.err.find("its default colour stands for it"), std::string::npos) << seen.err;
+    EXPECT_EQ(nlohmann::json::parse(seen.out)["rgba"][0], nlohmann::json({0.2, 0.4, 0.6, 1})) << seen.out;
+  }
+}
+
+TEST(Bake, saysWhatDependsOnTheViewInAFileToo) {
+  const Workplace place;
+  place.write("seen.mtlx", R"(<?xml version="1.0"?>
+<materialx version="1.39">
+  <nodegraph name="NG">
+    <viewdirection name="v" type="vector3"/>
+    <convert name="c" type="color3"><input name="in" type="vector3" nodename="v"/></convert>
+    <output name="out" type="color3" nodename="c"/>
+  </nodegraph>
+  <gltf_pbr name="s" type="surfaceshader"><input name="base_color" type="color3" nodegraph="NG"/></gltf_pbr>
+  <surfacematerial name="m" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)");
+  const Outcome seen = place.run({"bake", "seen.mtlx", "-o", "seen.gltf", "--size", "4"});
+  EXPECT_EQ(seen.status, 0) << seen.err;
+  EXPECT_NE(seen.err.find("[depends-on-view]"), std::string::npos) << seen.err;
+}
+
 /// What a node asks of its neighbours are the places beside it: sixteen along a side of eight texels.
 TEST(Bake, hasDerivatives) {
   const Workplace place;

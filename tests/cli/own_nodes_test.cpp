@@ -327,6 +327,9 @@ TEST(OwnDefinitions, AreFound) {
   EXPECT_NE(place.run({"gen", "dusty.mtlx", "--materialx", "nowhere", "-o", "out"})
                 .err.find("the folder of MaterialX definitions cannot be read"),
             std::string::npos);
+  EXPECT_NE(place.run({"gen", "dusty.mtlx", "--materialx", "studio/patterns/dust.mtlx", "-o", "out"})
+                .err.find("it is a file where a folder of MaterialX definitions is asked for"),
+            std::string::npos);
 }
 
 TEST(OwnDefinitions, AreChecked) {

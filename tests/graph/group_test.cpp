@@ -37,7 +37,7 @@ Graph towerOf(size_t levels) {
 TEST(GraphGroups, areNotMoreThanAGraphMayHave) {
   EXPECT_EQ(formatAll(graph::check(towerOf(8), sampleLibrary(), 300)), "");
   EXPECT_EQ(formatAll(graph::check(towerOf(8), sampleLibrary(), 200)),
-            "/groups: error: with its groups in their places the graph has more than 200 nodes "
+            "/groups/g7/nodes/1: error: with its groups in their places 'g7' has more than 200 nodes "
             "[graph-too-large]\n  help: --limit nodes=NUMBER raises the limit\n");
   EXPECT_EQ(graph::check(towerOf(40), sampleLibrary()).at(0).code, "graph-too-large");
   const Diagnostics deep = graph::check(towerOf(70), sampleLibrary());

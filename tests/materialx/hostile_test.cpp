@@ -111,6 +111,27 @@ TEST(MaterialXHostile, nodesInARow) {
       << codesOf(inDocument(nodes)).substr(0, 400);
 }
 
+/// Definitions of two of the one before each: the place is that of the node with which they are too many.
+TEST(MaterialXHostile, definitionsThatDouble) {
+  std::string document =
+      "<nodedef name=\"ND_d0\" node=\"d0\"><output name=\"out\" type=\"float\"/></nodedef>"
+      "<nodegraph name=\"NG_d0\" nodedef=\"ND_d0\"><constant name=\"c\" type=\"float\"/>"
+      "<output name=\"out\" type=\"float\" nodename=\"c\"/></nodegraph>";
+  for (int i = 1; i < 20; ++i)
+    document += fmt::format(
+        "<nodedef name=\"ND_d{0}\" node=\"d{0}\"><output name=\"out\" type=\"float\"/></nodedef>"
+        "<nodegraph name=\"NG_d{0}\" nodedef=\"ND_d{0}\"><d{1} name=\"x\" type=\"float\"/>"
+        "<d{1} name=\"y\" type=\"float\"/><add name=\"sum\" type=\"float\"><input name=\"in1\" "
+        "type=\"float\" "
+        "nodename=\"x\"/><input name=\"in2\" type=\"float\" nodename=\"y\"/></add>"
+        "<output name=\"out\" type=\"float\" nodename=\"sum\"/></nodegraph>\n",
+        i, i - 1);
+  document +=
+      "<nodegraph name=\"NG\"><d19 name=\"v\" type=\"float\"/>"
+      "<output name=\"out\" type=\"float\" nodename=\"v\"/></nodegraph>";
+  EXPECT_EQ(codesOf(inDocument(document)), "graph-too-large wrong-pattern");
+}
+
 /// Looks that inherit from each other, collections in a ring, groups of groups, and every variant for every
 /// material: each is told, and none takes long.
 TEST(MaterialXHostile, looksWithoutEnd) {

@@ -80,6 +80,10 @@ static Result<std::vector<lang::SourceFile>> filesOf(const std::string& folder, 
   for (Iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     if (it->path().extension() == extension) paths.push_back(it->path().generic_string());
   }
+  if (error == std::errc::not_a_directory)
+    return fail("file-unreadable", {folder, 0, 0, {}},
+                fmt::format("it is a file where a folder of {} is asked for", what),
+                "name the folder that it lies in; a document is read by every other verb");
   if (error)
     return fail("file-unreadable", {folder, 0, 0, {}}, fmt::format("the folder of {} cannot be read", what),
                 error.message());

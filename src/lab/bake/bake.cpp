@@ -209,6 +209,7 @@ Result<Baking::Computed> Baking::ofPattern(const Item& item, FileImages& images)
   Messages repeated;
   if (Result<void> lowered = evaluated.lower(graph, *language_, false, {}, repeated); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
+  warnOfView(evaluated.module(), info.group);
   return bound(evaluated, images);
 }
 

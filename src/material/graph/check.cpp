@@ -293,29 +293,40 @@ void GraphCheck::nesting() {
   if (!findings_.empty()) return;
   std::vector<uint64_t> sizes(graph_.groups.size(), 0);
   std::vector<size_t> depths(graph_.groups.size(), 1);
+  size_t last = 0;                                 // with which there are too many
+  std::optional<std::pair<size_t, size_t>> large;  // the first such group, and the node
   const auto count = [&](const std::vector<Node>& nodes, size_t& depth) {
     uint64_t all = 0;
     for (const Node& node : nodes) {
       const std::optional<size_t> group = node.group ? graph_.findGroup(node.type) : std::nullopt;
       if (group) depth = std::max(depth, depths[*group] + 1);
+      if (all <= most_) last = static_cast<size_t>(&node - nodes.data());
       // Groups of groups grow fast: what is too much stays too much.
       all = std::min(most_ + 1, all + 1 + (group ? sizes[*group] : 0));
     }
     return all;
   };
+  const auto tooLarge = [&](std::string_view what) {
+    return fmt::format("with its groups in their places {} has more than {} nodes", what, most_);
+  };
   for (const size_t index : contracts_.groups().order) {
     sizes[index] = count(graph_.groups[index].nodes, depths[index]);
-    if (depths[index] <= kDeepest) continue;
-    return error({Section::Groups, index}, pointerTo("groups", graph_.groups[index].name), "groups-too-deep",
-                 fmt::format("{} has groups within groups, more than {} deep",
-                             inQuotes(graph_.groups[index].name), kDeepest),
-                 "put the nodes of some of them in their places");
+    const std::string& name = graph_.groups[index].name;
+    if (depths[index] > kDeepest)
+      return error({Section::Groups, index}, pointerTo("groups", name), "groups-too-deep",
+                   fmt::format("{} has groups within groups, more than {} deep", inQuotes(name), kDeepest),
+                   "put the nodes of some of them in their places");
+    if (sizes[index] > most_ && !large) large = {index, last};
+  }
+  if (large) {
+    const std::string& name = graph_.groups[large->first].name;
+    return error({Section::Groups, large->first, Section::Nodes, large->second},
+                 fmt::format("{}/nodes/{}", pointerTo("groups", name), large->second), "graph-too-large",
+                 tooLarge(inQuotes(name)), raising("nodes"));
   }
   size_t depth = 0;
   if (count(graph_.nodes, depth) <= most_) return;
-  error({Section::Groups}, "/groups", "graph-too-large",
-        fmt::format("with its groups in their places the graph has more than {} nodes", most_),
-        raising("nodes"));
+  error({Section::Groups}, "/groups", "graph-too-large", tooLarge("the graph"), raising("nodes"));
 }
 
 // -- attributes --

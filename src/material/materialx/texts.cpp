@@ -107,7 +107,8 @@ const Element* Patterns::text(Scope& within, const Element& input) {
     if (next == nullptr) return &kEmpty;
     at = next;
   }
-  error(input, "too-deep", fmt::format("{} nodes of texts stand behind each other", kMostNodesOfTexts));
+  error(input, "too-deep",
+        fmt::format("{} nodes of texts stand behind each other, or in a circle", kMostNodesOfTexts));
   return nullptr;
 }
 
@@ -422,15 +423,17 @@ std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const El
     if (of == ir::Type::Float) color_of = {color_of[0], color_of[0], color_of[0], 1};
     if (of == ir::Type::Vec3) color_of[3] = 1;
   }
-  if (texture.texture < 0) texture.color = color_of;
+  texture.color = color_of;
   texture.place = from->place;
   texture.pointer = from->place.pointer.empty() ? fmt::format("/{}/{}", scope.group_.name, element.name())
                                                 : from->place.pointer;
+  // A texture of the glTF file is one, whatever each node has where it cannot be read: the first one's
+  // counts.
   std::string key = fmt::format(
       "{} {} {} {} {} {} {}", texture.file, texture.texture, texture.srgb, static_cast<int>(texture.wrap[0]),
       static_cast<int>(texture.wrap[1]), texture.nearest,
-      texture.color ? fmt::format("{} {} {} {}", color_of[0], color_of[1], color_of[2], color_of[3])
-                    : std::string());
+      texture.texture < 0 ? fmt::format("{} {} {} {}", color_of[0], color_of[1], color_of[2], color_of[3])
+                          : std::string());
   const auto [it, fresh] = textures_.try_emplace(std::move(key));
   if (fresh) {
     texture.name = it->second =

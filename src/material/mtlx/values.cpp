@@ -189,7 +189,9 @@ Diagnostic Units::unknown(const Element& said) {
       "unknown-unit",
       Severity::Error,
       said.place,
-      fmt::format("{} is in {}", quote(said.name()), quote(said.get("unit"))),
+      said.get("unittype").empty() ? fmt::format("{} is in {}", quote(said.name()), quote(said.get("unit")))
+                                   : fmt::format("{} is in {}, which is no unit of {}", quote(said.name()),
+                                                 quote(said.get("unit")), quote(said.get("unittype"))),
       "units are those of MaterialX's unit types \"distance\", \"angle\" and \"time\", and of a \"unitdef\"",
       {}};
 }
