@@ -62,6 +62,7 @@ public:
     chooseVariables();
     emitted_.assign(dag_.size(), false);
     emitValues(fields_);
+    program_.live = std::move(live_);
     return std::move(program_);
   }
 
@@ -70,6 +71,7 @@ public:
     countUses();
     chooseVariables();
     order();
+    program_.live = std::move(live_);
     return std::move(program_);
   }
 

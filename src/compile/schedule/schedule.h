@@ -39,6 +39,7 @@ struct Statement {
 struct Program {
   ir::Stage stage = ir::Stage::Fragment;
   std::vector<Statement> statements;
+  std::vector<ir::ValueId> live;  ///< what the outputs, or the preshader's fields, reach; ascending
   /// By value id: the variable's name, or empty when the value is written where it is used. Names are unique
   /// in the stage and are identifiers in every target. An Input has none, but for those of loops; what a loop
   /// has carried is called as in its rounds.

@@ -375,7 +375,7 @@ private:
   /// Those whose numbers some operation of the stage must not see.
   static std::vector<Type> lateTypes(const ir::Module& module, const schedule::Program& program) {
     std::vector<Type> types;
-    for (const ir::ValueId id : ir::reachable(module, program.stage)) {
+    for (const ir::ValueId id : program.live) {
       const ir::Value& value = module.dag[id];
       const int late = lateOperand(module.dag, value);
       if (late < 0) continue;

@@ -43,7 +43,7 @@ Body::Body(const ir::Module& module, const schedule::Program& program, const Int
       globals_(globals),
       debug_(options.debug),
       relaxed_(options.relaxed),
-      live_(ir::reachable(module, program.stage)),
+      live_(program.live),
       loops_(dag_, live_),
       ids_(dag_.size(), 0),
       splats_(dag_.size() * 3, 0),

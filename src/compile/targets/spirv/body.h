@@ -97,7 +97,7 @@ private:
   const bool relaxed_;  ///< what the Dag says is relaxed counts
   Words code_;
 
-  std::vector<ir::ValueId> live_;
+  const std::vector<ir::ValueId>& live_;
   ir::Loops loops_;
   std::vector<uint8_t> product_in_;      ///< by value: of a sum, 1 + the operand that it multiplies itself
   std::vector<uint8_t> fused_;           ///< by value: a product that is part of the one sum that reads it
