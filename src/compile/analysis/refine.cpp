@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "analysis/slopes.h"
@@ -25,7 +26,7 @@ class Variables {
 public:
   Variables(const ir::Dag& dag, ValueId root) : dag_(dag), cone_(ir::reachable(dag, {{root}})) {
     markGeometric();
-    std::vector<bool> needed(dag.size(), false);
+    std::vector<uint8_t> needed(dag.size(), false);
     needed[root] = true;
     for (size_t i = cone_.size(); i-- > 0;) {
       const ValueId id = cone_[i];
@@ -72,7 +73,7 @@ private:
 
   const ir::Dag& dag_;
   std::vector<ValueId> cone_;
-  std::vector<bool> geometric_, free_;  ///< depends on inputs that meet in a product of vectors, on others
+  std::vector<uint8_t> geometric_, free_;  ///< depends on inputs that meet in a product of vectors, on others
 };
 
 class Refinement {

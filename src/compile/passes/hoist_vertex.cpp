@@ -1,5 +1,6 @@
 // Affine functions of interpolated values: the same number computed at the vertices interpolates exactly.
 #include <algorithm>
+#include <cstdint>
 #include <map>
 
 #include "ir/facts.h"
@@ -70,7 +71,7 @@ private:
 
   /// Components interpolated when the given values come from the vertex stage.
   int interpolants(const std::vector<ValueId>& moved) const {
-    std::vector<bool> reached = needed_;
+    std::vector<uint8_t> reached = needed_;
     int count = 0;
     // What affine values are made of is affine, or uniform and interpolates nothing.
     for (auto it = affines_.rbegin(); it != affines_.rend(); ++it) {
@@ -87,7 +88,7 @@ private:
 
   const ir::Dag& dag_;
   std::vector<ValueId> live_, affines_;
-  std::vector<bool> affine_, needed_;
+  std::vector<uint8_t> affine_, needed_;
 };
 
 }  // namespace

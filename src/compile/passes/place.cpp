@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "ir/names.h"
 #include "passes/passes.h"
@@ -71,7 +72,7 @@ std::string_view layerFor(const ir::Dag& dag, ir::ValueId id) {
 /// The values of material rate that a faster value or an output reads.
 std::vector<ir::ValueId> frontier(const ir::Module& module) {
   const ir::Dag& dag = module.dag;
-  std::vector<bool> found(dag.size(), false);
+  std::vector<uint8_t> found(dag.size(), false);
   const auto consider = [&](ir::ValueId id) {
     if (dag[id].rate == ir::Rate::Material) found[id] = true;
   };

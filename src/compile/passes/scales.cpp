@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "passes/passes.h"
 #include "passes/rewrite.h"
@@ -166,7 +167,7 @@ void pullOut(ir::Module& module) {
   Rewriter rewriter(module);
   const ir::Dag& old = module.dag;
   std::vector<int> dots(old.size(), 0);
-  std::vector<bool> needed(old.size(), false);
+  std::vector<uint8_t> needed(old.size(), false);
   const std::vector<ValueId>& live = rewriter.live();
   for (const ValueId id : live) {
     const ir::Value& value = old[id];
@@ -213,7 +214,7 @@ void pullOut(ir::Module& module) {
 void takeMagnitudes(ir::Module& module) {
   Rewriter rewriter(module);
   const ir::Dag& old = module.dag;
-  std::vector<bool> needed(old.size(), false);
+  std::vector<uint8_t> needed(old.size(), false);
   const std::vector<ValueId>& live = rewriter.live();
   for (const ValueId id : live) {
     const Op op = old[id].op;

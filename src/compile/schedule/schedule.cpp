@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <map>
 
 #include "ir/loops.h"
@@ -31,7 +32,7 @@ public:
   }
 
 private:
-  std::vector<bool> has_;
+  std::vector<uint8_t> has_;
 };
 
 class Scheduler {
@@ -260,7 +261,7 @@ private:
       if (module_.outputs[o].kind == ir::OutputKind::Discard) roots.push_back(module_.outputs[o].value);
     }
     if (roots.empty()) return roots;
-    std::vector<bool> whole(loops_.all().size(), false);
+    std::vector<uint8_t> whole(loops_.all().size(), false);
     for (const ir::ValueId id : live_) {
       if (!needsDerivatives(id) || inLoop(id)) continue;
       // Of a loop all, with those around it.
@@ -478,9 +479,9 @@ private:
   std::vector<ir::ValueId> fields_;  ///< of the preshader
   std::vector<uint32_t> outputs_, outputs_left_;
   std::vector<int> uses_, size_;
-  std::vector<bool> used_deeper_;  ///< in a loop in which it is not computed
-  std::vector<bool> is_carried_;   ///< into the first round of a loop, or the next one
-  std::vector<bool> variable_, emitted_;
+  std::vector<uint8_t> used_deeper_;  ///< in a loop in which it is not computed
+  std::vector<uint8_t> is_carried_;   ///< into the first round of a loop, or the next one
+  std::vector<uint8_t> variable_, emitted_;
   ir::Names names_;
   bool discards_ = false;
   ir::TermId section_ = 0;

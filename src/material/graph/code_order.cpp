@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -100,7 +101,7 @@ private:
       size_t next = 0;
     };
     std::vector<size_t> order;
-    std::vector<bool> seen(graph_.nodes.size(), false);
+    std::vector<uint8_t> seen(graph_.nodes.size(), false);
     std::vector<Visit> path;
     order.reserve(graph_.nodes.size());
     path.reserve(graph_.nodes.size());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <unordered_map>
 #include <utility>
 
@@ -93,7 +94,7 @@ private:
   Graph& graph_;
   Diagnostics& warnings_;
   Origins& origins_;
-  std::vector<bool> marked_;
+  std::vector<uint8_t> marked_;
   std::vector<std::string> written_;  ///< the node's id in the graph, once it is there
   std::vector<std::pair<Texel, Source>> texels_;
   /// Of the properties that the ports reach the first of the library that has a texel: the texture is called
@@ -409,7 +410,7 @@ void Writer::writeOrdered() {
 
 /// Terms that the material has, whose values no port of the template takes.
 void Writer::notTaken() {
-  std::vector<bool> used(model_.terms.size());
+  std::vector<uint8_t> used(model_.terms.size());
   for (const Line& line : model_.lines) {
     const bool value = line.kind == lang::LineDecl::Kind::Value;
     if (line.term == Line::kNone || (!value && line.kind != lang::LineDecl::Kind::Out)) continue;

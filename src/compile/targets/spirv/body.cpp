@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 namespace lacquer::targets::spirv {
 
@@ -603,7 +604,7 @@ void Body::hoist(const ir::Loop& loop) {
 void Body::hoist(const std::vector<ValueId>& sums) {
   std::vector<ValueId> body;
   std::vector<ValueId> pending;
-  std::vector<bool> seen(dag_.size(), false);
+  std::vector<uint8_t> seen(dag_.size(), false);
   const auto visit = [&](ValueId id) {
     if (!seen[id] && dag_[id].rate == Rate::Light) pending.push_back(id);
     seen[id] = true;
@@ -690,7 +691,7 @@ void Body::discard(ValueId condition) {
 /// Derivatives are undefined once a neighbour is dropped: what needs them comes before. What waits for a loop
 /// that is still to come cannot.
 void Body::derivativesFirst() {
-  std::vector<bool> waits(dag_.size(), false);
+  std::vector<uint8_t> waits(dag_.size(), false);
   for (const ValueId id : live_) {
     const ir::Value& v = dag_[id];
     // What has an id is there already; a sum's operands belong to its loop.
