@@ -114,6 +114,60 @@ TEST(LangLibrary, LookupsOnManyThreads) {
   EXPECT_EQ(found, (std::vector<int>{100, 100, 100, 100}));
 }
 
+TEST(LangLibrary, ASignatureHasNoBodyUntilTheNodeIsAskedFor) {
+  const Library library = Library::embedded();
+  const auto head = library.signature("coat_absorption");
+  ASSERT_TRUE(head);
+  EXPECT_FALSE((*head)->params.empty());
+  EXPECT_TRUE((*head)->body.statements.empty());
+  const auto whole = library.node("coat_absorption");
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(*whole, *head);
+  EXPECT_FALSE((*whole)->body.statements.empty());
+  EXPECT_FALSE((*library.signature("coat_absorption"))->body.statements.empty());
+}
+
+TEST(LangLibrary, SignaturesAreThoseOfTheNodes) {
+  const Library lazy = Library::embedded(), whole = Library::embedded();
+  for (const std::string_view name : whole.names(DeclKind::Node)) {
+    const auto head = lazy.signature(name);
+    const auto node = whole.node(name);
+    ASSERT_TRUE(head && node) << name;
+    const auto same = [&](const std::vector<Param>& a, const std::vector<Param>& b) {
+      return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Param& x, const Param& y) {
+        return x.type == y.type && x.name == y.name && x.has_range == y.has_range && x.range == y.range &&
+               x.default_value == y.default_value && x.matrix_default == y.matrix_default &&
+               x.given == y.given;
+      });
+    };
+    EXPECT_TRUE(same((*head)->params, (*node)->params)) << name;
+    EXPECT_TRUE(same((*head)->results, (*node)->results)) << name;
+    EXPECT_EQ((*head)->name, (*node)->name);
+  }
+}
+
+TEST(LangLibrary, AUsersSignatureIsCheckedWhole) {
+  Library library = Library::embedded();
+  ASSERT_TRUE(library.add({{"a.node", node("bad", "return y;")}}));
+  const auto bad = library.signature("bad");
+  ASSERT_FALSE(bad);
+  EXPECT_EQ(bad.error()[0].code, "unknown-value");
+}
+
+TEST(LangLibrary, NamesOfGivensNeedNoCheck) {
+  const Library lazy = Library::embedded(), whole = Library::embedded();
+  ASSERT_TRUE(whole.checkAll().empty());
+  const auto all = [](const Library& library) {
+    std::set<std::string> names;
+    for (const std::string_view one : library.names(DeclKind::Template)) {
+      for (std::string& name : library.givenNames(one).names) names.insert(std::move(name));
+    }
+    return names;
+  };
+  EXPECT_EQ(all(lazy), all(whole));
+  EXPECT_TRUE(all(lazy).contains("light_sample.L"));
+}
+
 TEST(LangLibrary, ALongChainIsAnError) {
   std::string text;
   for (int i = 0; i < 2000; ++i)

@@ -186,7 +186,8 @@ Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
                             kStackNeeded / 1024));
   const bool folders = !options.node_directories.empty() || !options.materialx_directories.empty();
   if (!folders && options.node_texts.empty() && options.materialx_texts.empty()) {
-    static const auto kBuiltIn = std::make_shared<const Language>(lang::Library::embedded());
+    // It stays to the end of the program, which then need not take it apart.
+    static const auto& kBuiltIn = *new auto(std::make_shared<const Language>(lang::Library::embedded()));
     return kBuiltIn;
   }
   // Files of a folder may have changed.

@@ -197,6 +197,21 @@ void Checker::hintsOf(Param& param) {
                   fmt::format("most values do not lie outside of {}", ir::rangeText(param.range)));
 }
 
+void Checker::signature(NodeDecl& decl) {
+  for (Param& param : decl.params) {
+    choicesOf(param);
+    rangeOf(param);
+    defaultOf(param);
+    hintsOf(param);
+  }
+  for (Param& result : decl.results) {
+    rangeOf(result);
+    if (!ir::isTexture(result.type)) continue;
+    reporter_.error("wrong-type", result.span, fmt::format("a node cannot give {}", aType(result.type)),
+                    "results are everything but textures");
+  }
+}
+
 void Checker::node(NodeDecl& decl) {
   node_ = &decl;
   if (decl.name == "PI") nameRules(decl.name, decl.span, "node");
@@ -213,18 +228,7 @@ void Checker::node(NodeDecl& decl) {
   twice(decl.params, "parameter");
   twice(decl.results, "result");
   twice(decl.variants, "variant");
-  for (Param& param : decl.params) {
-    choicesOf(param);
-    rangeOf(param);
-    defaultOf(param);
-    hintsOf(param);
-  }
-  for (Param& result : decl.results) {
-    rangeOf(result);
-    if (!ir::isTexture(result.type)) continue;
-    reporter_.error("wrong-type", result.span, fmt::format("a node cannot give {}", aType(result.type)),
-                    "results are everything but textures");
-  }
+  signature(decl);
   body(decl, {}, decl.span, decl.body);
   for (Variant& variant : decl.variants) body(decl, variant.name, variant.span, variant.body);
 }

@@ -50,6 +50,8 @@ public:
   // Each is called once, for a declaration that parsed without an error. What is wrong goes to the reporter.
   void constant(ConstDecl& decl);
   void node(NodeDecl& decl);
+  /// Of a node that is right, its parameters and results alone.
+  void signature(NodeDecl& decl);
   /// `bases` are what it extends, freshly parsed, the farthest first; they checked without an error on their
   /// own.
   void templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases);

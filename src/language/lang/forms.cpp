@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kMostForms = 256;
 
 /// A place of the list: a variable with what it may be, or one type.
-struct Place {
+struct ListPlace {
   std::string_view variable;
   std::vector<ir::Type> types;
 };
@@ -26,11 +26,11 @@ public:
       : reporter_(reporter), tokens_(tokenize(reporter, begin, end)) {}
 
   /// Nothing after an error.
-  std::vector<Place> run() {
-    std::vector<Place> places;
+  std::vector<ListPlace> run() {
+    std::vector<ListPlace> places;
     do {
       ++at_;  // '<' or ';'
-      Place place;
+      ListPlace place;
       if (!this->place(place)) return {};
       places.push_back(std::move(place));
     } while (token().is(";"));
@@ -48,7 +48,7 @@ private:
     return false;
   }
 
-  bool place(Place& place) {
+  bool place(ListPlace& place) {
     if (token().kind == Token::Kind::Name && token(1).is("in")) {
       place.variable = token().text;
       if (findType(place.variable) || isReserved(place.variable))
@@ -63,7 +63,7 @@ private:
     return type(place);
   }
 
-  bool type(Place& place) {
+  bool type(ListPlace& place) {
     const std::optional<ir::Type> found = findType(token().text);
     if (token().kind != Token::Kind::Name || !found)
       return wrong("expected a type", "such as float, vec3 or mat4");
@@ -88,9 +88,9 @@ std::vector<Form> formsOf(Reporter& reporter, std::string_view name, uint32_t af
   const size_t close = text.find('>', after_name);
   const auto list_end =
       static_cast<uint32_t>(std::min<size_t>(close == std::string_view::npos ? end : close + 1, end));
-  const std::vector<Place> places = Reader(reporter, after_name, list_end).run();
+  const std::vector<ListPlace> places = Reader(reporter, after_name, list_end).run();
   std::vector<Form> forms(places.empty() ? 0 : 1);
-  for (const Place& place : places) {
+  for (const ListPlace& place : places) {
     std::vector<Form> wider;
     for (const Form& form : forms) {
       for (const ir::Type type : place.types) {

@@ -23,6 +23,12 @@ struct SourceFile {
 
 enum class DeclKind : uint8_t { Const, Node, Template, Extension, Part, Profile, Lod, Layers, Switch };
 
+/// What a template gives to graphs, by the names that they write: "uv0", "light_sample.L".
+struct GivenNames {
+  std::vector<std::string> names;
+  Origin origin;  ///< of the template
+};
+
 class Library {
 public:
   /// Fails when a declaration's head cannot be found or a name is declared twice.
@@ -45,6 +51,9 @@ public:
   Result<const ConstDecl*> constant(std::string_view name, std::string_view vendor = {}) const;
   /// A node, of several under one name by all of its types: "add<vec3>".
   Result<const NodeDecl*> node(std::string_view name, std::string_view vendor = {}) const;
+  /// The same where parameters and results are all that is looked at: bodies and variants of the library's
+  /// own nodes are there only once node() was asked for them.
+  Result<const NodeDecl*> signature(std::string_view name, std::string_view vendor = {}) const;
   /// The nodes of a name: one, or its forms, or none. Each has its parameters and results with their types
   /// and whether there is a default (`default_syntax`); all else is there once node() has checked it.
   /// Behind the name may stand the first of the types that tell its forms apart: "convert<vec3>".
@@ -53,6 +62,11 @@ public:
   /// As they are written, also where something in them is wrong: for the names that others may use. Null
   /// where there is none, or where it does not parse.
   const TemplateDecl* writtenTemplate(std::string_view name) const;
+  /// Of a template that is wrong as well, where it parses. Of the library's own what it adds to those that it
+  /// extends.
+  GivenNames givenNames(std::string_view name_of_template) const;
+  /// Whether nothing was added to the library's own files, which are right.
+  bool isBuiltIn() const;
   const ExtensionDecl* writtenExtension(std::string_view name) const;
   Result<const ExtensionDecl*> extension(std::string_view name) const;
   Result<const PartDecl*> part(std::string_view name, std::string_view vendor = {}) const;

@@ -43,7 +43,8 @@ private:
   void step() {
     const char c = text_[at_];
     if (isSpace(c)) {
-      ++at_;
+      do ++at_;
+      while (at_ < text_.size() && isSpace(text_[at_]));
       return;
     }
     if (isNameStart(c)) return word();
@@ -87,8 +88,8 @@ private:
     const size_t begin = at_;
     const bool may_begin = outside() || atLineStart();
     const std::string_view word = takeWord();
-    const std::optional<DeclKind> kind = declaredBy(word);
-    if (!may_begin || !kind) {
+    const std::optional<DeclKind> kind = may_begin ? declaredBy(word) : std::nullopt;
+    if (!kind) {
       at_ = begin;
       stray(word.size());
       at_ = begin + word.size();

@@ -30,6 +30,7 @@ class Compiler {
 public:
   Compiler(const lang::Library& library, const material::Schema& schema)
       : library_(library), names_(library, schema, model_) {
+    model_.library = &library;
     model_.schema = &schema;
   }
   Result<Model> run(std::string_view profile, const std::set<std::string, std::less<>>& lods);
@@ -436,7 +437,8 @@ Value Compiler::call(const Expr& expr) {
   Value out;
   out.kind = Value::Kind::Call;
   const std::string name = lang::formName(expr.name, expr.form);
-  const Result<const lang::NodeDecl*> node = library_.node(name, names_.vendor());
+  const Result<const lang::NodeDecl*> node =
+      expr.variant.empty() ? library_.signature(name, names_.vendor()) : library_.node(name, names_.vendor());
   if (!node) {
     if (library_.has(lang::DeclKind::Node, name, names_.vendor())) {
       wrong_.insert(wrong_.end(), node.error().begin(), node.error().end());
@@ -448,7 +450,7 @@ Value Compiler::call(const Expr& expr) {
   }
   out.node = *node;
   out.variant = expr.variant;
-  if ((*node)->find(expr.variant) == nullptr) {
+  if (!expr.variant.empty() && (*node)->find(expr.variant) == nullptr) {
     error(expr.span, "unknown-variant", fmt::format("'{}' has no variant '{}'", expr.name, expr.variant));
   }
   Value absent;
@@ -740,6 +742,7 @@ void Compiler::order() {
 /// What is made of a wrong line is wrong as well: of a text that has one, and of the library's own, no more
 /// is said.
 void Compiler::checkLines() {
+  if (library_.isBuiltIn()) return;  // they were checked when the library was built
   std::set<std::string> files;
   for (const Diagnostic& one : wrong_) files.insert(one.place.file);
   for (const Part& part : model_.parts) {

@@ -101,7 +101,9 @@ Scaling Dimming::call(const Value& value, std::string_view path, uint32_t part) 
     }
     args.push_back(arg);
   }
-  const std::vector<Scaling>& results = nodes_.of(*value.node, value.variant, args);
+  // What a line calls has its bodies once it is asked for them.
+  const lang::NodeDecl& node = **model_.library->node(value.node->name);
+  const std::vector<Scaling>& results = nodes_.of(node, value.variant, args);
   const std::string_view head = path.substr(0, path.find('.'));
   for (size_t i = 0; i < results.size(); ++i) {
     if (!head.empty() && value.node->results[i].name == head) return results[i];

@@ -137,6 +137,7 @@ struct Out {
 };
 
 struct Model {
+  const lang::Library* library = nullptr;  ///< whose nodes the lines call
   const material::Schema* schema = nullptr;
   const lang::ProfileDecl* profile = nullptr;
   std::vector<Part> parts;  ///< from the inside outwards

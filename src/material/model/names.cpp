@@ -84,19 +84,11 @@ Names::Names(const lang::Library& library, const material::Schema& schema, Model
     : library_(library), schema_(schema), model_(model) {
   // A template that is wrong says so when it is used; what the others give has names all the same.
   for (const std::string_view name : library.names(lang::DeclKind::Template)) {
-    const lang::TemplateDecl* decl = library.writtenTemplate(name);
-    if (decl == nullptr) continue;
-    const auto add = [&](std::string given) {
+    lang::GivenNames decl = library.givenNames(name);
+    for (std::string& given : decl.names) {
       Given& one = givens_[std::move(given)];
-      one.built_in = one.built_in || decl->origin.built_in;
-      one.vendors.insert(decl->origin.vendor);
-    };
-    for (const lang::EnvironmentDecl& one : decl->environments) add(std::string(one.name));
-    for (const lang::GivenDecl& one : decl->givens) {
-      if (!one.multiple) add(std::string(one.name));
-      for (const lang::Param& result : one.results) {
-        if (one.multiple) add(fmt::format("{}.{}", one.name, result.name));
-      }
+      one.built_in = one.built_in || decl.origin.built_in;
+      one.vendors.insert(decl.origin.vendor);
     }
   }
   for (auto& [name, given] : givens_) {
