@@ -211,6 +211,11 @@ typedef struct lacquer_used_texture {
   int srgb;
   int stand_in; /* 1: what is bound has one texel, this one */
   double texel[4];
+  const char* file; /* of a graph's own texture: the image, from its folder; else empty */
+  /* 1: the next four are how it is looked up, as lacquer_file_texture has them, whatever the file's texture
+   * says */
+  int has_sampler;
+  int wrap_s, wrap_t, mag_filter, min_filter;
 } lacquer_used_texture;
 LACQUER_C int lacquer_contract_use(const lacquer_contract* contract, size_t place, size_t use,
                                    lacquer_use* to, size_t size);
@@ -356,10 +361,11 @@ LACQUER_C size_t lacquer_graph_texture_count(const lacquer_graph* graph);
 LACQUER_C int lacquer_graph_texture(const lacquer_graph* graph, size_t index, char* slot, size_t capacity,
                                     int* texture);
 /* What is there, as JSON, in the order of the graph's own. Of its textures an array of name, type, srgb,
- * texture (-1: none), pointer, file, ui; of its groups an array of their names. Of its nodes, or with the
- * name of a group of that's, an array of id, node or group, variant, stage, inputs (name to source), ui; of
- * its outputs, or of a group's, an object of sources by name. A `group` of NULL is the graph. ui is any JSON
- * of a tool's, or null. */
+ * texture (-1: none), pointer, file, ui, also, and where the graph says how it is looked up, whatever the
+ * file's texture says, its sampler: wrap_s, wrap_t, mag_filter; of its groups an array of their names. Of its
+ * nodes, or with the name of a group of that's, an array of id, node or group, variant, stage, inputs (name
+ * to source), ui; of its outputs, or of a group's, an object of sources by name. A `group` of NULL is the
+ * graph. ui is any JSON of a tool's, or null. */
 LACQUER_C lacquer_text* lacquer_graph_textures(const lacquer_graph* graph);
 LACQUER_C lacquer_text* lacquer_graph_groups(const lacquer_graph* graph);
 LACQUER_C lacquer_text* lacquer_graph_nodes(const lacquer_graph* graph, const char* group);

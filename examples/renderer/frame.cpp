@@ -200,8 +200,9 @@ void Renderer::fillMaterial(Stage& stage, const lacquer::Drawn& drawn) {
     for (const lacquer::UsedTexture& used : drawn.use->textures) {
       if (used.slot != texture.name) continue;
       const auto place = static_cast<size_t>(std::max(used.texture, 0));
-      const VkSamplerCreateInfo how = vk::samplerInfo(
-          used.texture < 0 ? lacquer::TextureSampler{} : stage.contract.textures.at(place).sampler);
+      const lacquer::TextureSampler of_file =
+          used.texture < 0 ? lacquer::TextureSampler{} : stage.contract.textures.at(place).sampler;
+      const VkSamplerCreateInfo how = vk::samplerInfo(used.sampler.value_or(of_file));
       writes.image(set, texture.at.binding, textureOf(used).view, samplerOf(how));
     }
   }

@@ -56,21 +56,6 @@ struct TextureTransform {
   std::array<double, 2> scale{1, 1};
   bool operator==(const TextureTransform&) const = default;
 };
-enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
-enum class Filter : uint8_t {
-  Open,  ///< the file leaves it to the engine
-  Nearest,
-  Linear,
-  NearestMipmapNearest,
-  LinearMipmapNearest,
-  NearestMipmapLinear,
-  LinearMipmapLinear
-};
-struct TextureSampler {
-  Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
-  Filter mag_filter = Filter::Open, min_filter = Filter::Open;
-  bool operator==(const TextureSampler&) const = default;
-};
 /// A texture of a use's shader.
 struct UsedTexture {
   std::string slot;                           ///< ReflectedTexture::name
@@ -81,8 +66,10 @@ struct UsedTexture {
   bool srgb = false;
   /// Where only other materials of the same program have the texture: the one texel of what is bound.
   std::optional<std::array<double, 4>> stand_in;
-  std::string file;                            ///< of a graph's own texture: the image, from its folder
-  TextureSampler sampler;                      ///< where there is a file
+  std::string file;  ///< of a graph's own texture: the image, from its folder
+  /// How it is looked up: where there is a file, and where a procedural texture says it, in place of the
+  /// sampler of the file's texture.
+  std::optional<TextureSampler> sampler;
   std::optional<std::array<double, 4>> color;  ///< of a graph's own texture: what is there without an image
 };
 

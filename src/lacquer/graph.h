@@ -40,6 +40,23 @@ struct Parameter {
   std::string ui{};     ///< the tool's own words, JSON; may be empty
 };
 
+enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
+enum class Filter : uint8_t {
+  Open,  ///< the file leaves it to the engine
+  Nearest,
+  Linear,
+  NearestMipmapNearest,
+  LinearMipmapNearest,
+  NearestMipmapLinear,
+  LinearMipmapLinear
+};
+/// How a texture is looked up.
+struct TextureSampler {
+  Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
+  Filter mag_filter = Filter::Open, min_filter = Filter::Open;
+  bool operator==(const TextureSampler&) const = default;
+};
+
 /// A texture of a material. A shader that reads it has its name as ReflectedTexture::slot.
 struct TextureUse {
   std::string name;     ///< "coat_roughness_texture"
@@ -52,6 +69,9 @@ struct TextureUse {
   /// Beside `pointer` the textureInfos of other properties that have the same texel, in order. One of them
   /// that is changed alone has a texture of its own then: another program.
   Strings also{};
+  /// How it is looked up, where the graph says so: of a file, and of a procedural texture, in place of the
+  /// sampler of the file's texture.
+  std::optional<TextureSampler> sampler{};
 };
 
 /// What something is connected to.

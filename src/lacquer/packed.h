@@ -81,9 +81,9 @@ typedef struct {
   uint32_t texture;  /* index into the file's textures, or LACQUER_PACKED_NONE: a file, or a stand-in */
   uint32_t texcoord; /* or LACQUER_PACKED_NONE */
   float offset[2], rotation, scale[2];            /* which the shader applies */
-  uint8_t wrap_s, wrap_t, mag_filter, min_filter; /* of a file; numbers as in a file's textures */
+  uint8_t wrap_s, wrap_t, mag_filter, min_filter; /* where has_sampler; numbers as in a file's textures */
   uint8_t stand_in;                               /* one texel of `color` is bound */
-  uint8_t srgb, has_color, reserved;
+  uint8_t srgb, has_color, has_sampler;           /* in place of the sampler of the file's texture */
   float color[4];           /* of a stand-in; of a graph's texture what is there without an image */
   lacquer_packed_text file; /* of a graph's own texture: the image */
 } lacquer_packed_use_texture;

@@ -182,6 +182,43 @@ TEST(Contract, PrimitivesFindWhatTheyAreDrawnWith) {
   EXPECT_EQ(made.images.at(1).mime_type, "image/ktx2");
 }
 
+/// An image node of a procedural texture says how it looks up the file's texture, whose sampler does not
+/// count.
+TEST(Contract, ProceduralsHaveSamplersOfTheirOwn) {
+  const std::string file = R"({"asset": {"version": "2.0"},
+    "images": [{"uri": "a.png"}], "samplers": [{"wrapS": 33071, "wrapT": 33071, "magFilter": 9728}],
+    "textures": [{"source": 0, "sampler": 0}],
+    "extensions": {"KHR_texture_procedurals": {"procedurals": [{"nodetype": "nodegraph", "type": "color3",
+      "nodes": [{"nodetype": "image", "type": "color3", "inputs": {
+        "file": {"nodetype": "input", "type": "filename", "texture": 0},
+        "vaddressmode": {"nodetype": "input", "type": "string", "value": "mirror"}}}],
+      "outputs": {"out": {"nodetype": "output", "type": "color3", "node": 0}}}]}},
+    "materials": [{"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0},
+      "pbrMetallicRoughness": {"baseColorTexture": {"index": 0,
+      "extensions": {"KHR_texture_procedurals": {"index": 0}}}}}]})";
+  Messages messages;
+  const Options options = forContract();
+  const Scene scene = Scene::fromMemory(file, "file.gltf", options, messages);
+  const Contract made = contract(scene, {}, options, messages);
+  ASSERT_TRUE(made.ok) << messages.at(0).text;
+  const TextureSampler own{Wrap::Repeat, Wrap::Mirror, Filter::Linear, Filter::Open};
+  size_t found = 0;
+  for (const UsedTexture& used : made.materials.at(0).uses.at(0).textures) {
+    EXPECT_EQ(used.texture, 0);
+    EXPECT_EQ(used.sampler.has_value(), used.slot != "emissive_texture") << used.slot;
+    if (!used.sampler) continue;
+    EXPECT_EQ(*used.sampler, own);
+    ++found;
+  }
+  EXPECT_EQ(found, 1U);
+  const Graph graph = scene.graph(0, {}, options, messages);
+  for (const TextureUse& texture : graph.textures())
+    EXPECT_EQ(texture.sampler.has_value(), texture.name != "emissive_texture") << texture.name;
+  const Graph again = Graph::fromJson(graph.toJson(), "graph.json", messages);
+  for (const TextureUse& texture : again.textures())
+    EXPECT_EQ(texture.sampler.has_value(), texture.name != "emissive_texture") << texture.name;
+}
+
 TEST(Contract, PassesAreTheMaterialsOwnWhateverProgramsTheyShare) {
   for (const uint32_t programs : {0U, 1U}) {
     SCOPED_TRACE(programs);

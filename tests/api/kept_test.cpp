@@ -74,6 +74,21 @@ protected:
   Messages messages_;
 };
 
+TEST_F(Kept, ColourSpacesAreThoseOfTheElementsAround) {
+  const Scene scene = read(R"(<materialx version="1.39" colorspace="lin_rec709">
+  <nodegraph name="NG" colorspace="srgb_texture">
+    <constant name="own" type="color3"><input name="value" type="color3" value="0.5, 0.25, 0.5" colorspace="lin_rec709"/></constant>
+    <constant name="as" type="color3"><input name="value" type="color3" value="0.5, 0.25, 0.5"/></constant>
+    <output name="out" type="color3" nodename="own"/>
+  </nodegraph>
+</materialx>)");
+  ASSERT_TRUE(scene);
+  const std::string text = written(scene);
+  const std::string value = "<input name=\"value\" type=\"color3\" value=\"0.5, 0.25, 0.5\"";
+  EXPECT_TRUE(has(text, value + " colorspace=\"lin_rec709\"/>")) << text;
+  EXPECT_TRUE(has(text, value + "/>")) << text;
+}
+
 TEST_F(Kept, DocumentsAreWrittenAsTheyWereRead) {
   const Scene scene = read(kDocument);
   ASSERT_TRUE(scene);

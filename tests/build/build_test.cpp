@@ -242,6 +242,21 @@ TEST_F(Build, DepfileNamesEveryInput) {
             "more/extra.node\n");
 }
 
+TEST_F(Build, DepfileAndPlanNameWhatInputsInclude) {
+  fs::create_directories(folder_ / "lib");
+  writeText(folder_ / "lib/paint.mtlx",
+            "<materialx version=\"1.39\"><surface_unlit name=\"s\" type=\"surfaceshader\"/></materialx>");
+  writeText(folder_ / "m.mtlx",
+            "<materialx version=\"1.39\" xmlns:xi=\"http://www.w3.org/2001/XInclude\"><xi:include "
+            "href=\"lib/paint.mtlx\"/></materialx>");
+  files_ = {"m.mtlx"};
+  ASSERT_EQ(runProgram(gen("out", {"--depfile", "out.d"}), folder_), 0);
+  EXPECT_EQ(filesBelow(folder_).at("out.d").bytes, "out/manifest.json: \\\n  m.mtlx \\\n  lib/paint.mtlx\n");
+  ASSERT_EQ(
+      runProgram(command("plan", {"--ninja", "build.ninja", "-o", "planned", "-q", "--replan"}), folder_), 0);
+  EXPECT_NE(filesBelow(folder_).at("build.ninja").bytes.find("lib/paint.mtlx"), std::string::npos);
+}
+
 // -- plans --
 
 bool haveNinja() {

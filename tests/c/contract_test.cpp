@@ -54,6 +54,12 @@ json textureOf(const lacquer_used_texture& from) {
     row["transform"] = {
         {"offset", numbers(from.offset, 2)}, {"rotation", from.rotation}, {"scale", numbers(from.scale, 2)}};
   }
+  constexpr const char* kWraps[] = {"repeat", "clamp", "mirror"};
+  if (from.has_sampler != 0)
+    row["sampler"] = {{"wrap_s", kWraps[from.wrap_s]},
+                      {"wrap_t", kWraps[from.wrap_t]},
+                      {"mag_filter", from.mag_filter == 1 ? "nearest" : "linear"}};
+  if (std::strlen(from.file) != 0) row["file"] = from.file;
   if (from.stand_in != 0)
     row["stand_in"] = {{"texel", numbers(from.texel, 4)},
                        {"color_space", from.srgb != 0 ? "srgb" : "linear"}};

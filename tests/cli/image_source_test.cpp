@@ -49,6 +49,33 @@ TEST_F(ImageSource, TheFallbackStandsForWhatCannotBeDecoded) {
   }
 }
 
+/// Of a procedural texture the node's address mode counts, and not the sampler of the file's texture: left of
+/// a picture that is red, then blue, its last texel is blue, and where it is clamped the first one is red.
+TEST_F(ImageSource, ProceduralsLookImagesUpAsTheirNodesSay) {
+  const auto colors = [&](const std::string& mode) {
+    place_.write("points.json", R"([{"n": [0, 0, 1], "v": [0, 0, 1], "l": [0, 0, 1], "uv0": [-0.25, 0.5]}])");
+    place_.write(
+        "p.gltf",
+        R"({"asset": {"version": "2.0"}, "images": [{"uri": "data:image/png;base64,)"
+        "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAADUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg=="
+        R"("}], "samplers": [{"wrapS": 33071}], "textures": [{"source": 0, "sampler": 0}],
+      "materials": [{"name": "T", "extensions": {"KHR_materials_unlit": {}}, "pbrMetallicRoughness":
+        {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_procedurals": {"index": 0}}}}}],
+      "extensions": {"KHR_texture_procedurals": {"procedurals": [{"nodetype": "nodegraph", "type": "color3",
+        "nodes": [{"nodetype": "image", "type": "color3", "inputs": {
+          "file": {"nodetype": "input", "type": "filename", "texture": 0},
+          "filtertype": {"nodetype": "input", "type": "string", "value": "closest"},
+          "uaddressmode": {"nodetype": "input", "type": "string", "value": ")" +
+            mode + R"("}}}],
+        "outputs": {"out": {"nodetype": "output", "type": "color3", "node": 0}}}]}}})");
+    const Outcome outcome = place_.run({"eval", "p.gltf", "--points", "points.json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.all();
+    return json::parse(outcome.out)["rgba"][0];
+  };
+  EXPECT_EQ(colors("periodic"), json({0.0, 0.0, 1.0, 1.0}));
+  EXPECT_EQ(colors("clamp"), json({1.0, 0.0, 0.0, 1.0}));
+}
+
 TEST_F(ImageSource, WithoutAFallbackTheFormatIsNamed) {
   const std::pair<const char*, const char*> kFormats[] = {
       {R"("KHR_texture_basisu": {"source": 1})", "this is a KTX2 file"},

@@ -47,6 +47,7 @@ TEST(GraphJson, whatIsWrittenReadsBackTheSame) {
       EXPECT_EQ(read->textures[i].texture, graph.textures[i].texture);
       EXPECT_EQ(read->textures[i].pointer, graph.textures[i].pointer);
       EXPECT_EQ(read->textures[i].file, graph.textures[i].file);
+      EXPECT_EQ(read->textures[i].own_sampler, graph.textures[i].own_sampler);
       EXPECT_EQ(read->textures[i].wrap, graph.textures[i].wrap);
       EXPECT_EQ(read->textures[i].nearest, graph.textures[i].nearest);
       EXPECT_EQ(read->textures[i].color, graph.textures[i].color);

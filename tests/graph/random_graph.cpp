@@ -131,6 +131,9 @@ private:
     if (pick(3) == 0) slot.file = text();
     for (graph::Wrap& wrap : slot.wrap) wrap = static_cast<graph::Wrap>(pick(3));
     slot.nearest = pick(2) == 0;
+    slot.own_sampler =
+        slot.texture >= 0 && slot.file.empty() &&
+        (slot.wrap[0] != graph::Wrap::Repeat || slot.wrap[1] != graph::Wrap::Repeat || slot.nearest);
     if (pick(3) == 0) slot.color = components(Type::Vec4);
     slot.ui = ui();
     return slot;

@@ -111,6 +111,30 @@ TEST(MaterialXHostile, nodesInARow) {
       << codesOf(inDocument(nodes)).substr(0, 400);
 }
 
+/// Outputs, inputs and attributes without end are refused before each is compared with all others.
+TEST(MaterialXHostile, portsWithoutEnd) {
+  constexpr int kCount = 60'000;
+  std::string outputs = "<nodegraph name=\"NG\"><constant name=\"c\" type=\"float\"/>";
+  for (int i = 0; i < kCount; ++i)
+    outputs += fmt::format("<output name=\"o{}\" type=\"float\" nodename=\"c\"/>", i);
+  EXPECT_EQ(codesOf(inDocument(outputs + "</nodegraph>")), "too-many");
+  std::string ports, given;
+  for (int i = 0; i < kCount; ++i) {
+    ports += fmt::format("<input name=\"i{}\" type=\"float\" value=\"0.5\"/>", i);
+    given += fmt::format("<input name=\"i{}\" type=\"float\" value=\"0.25\"/>", kCount - 1 - i);
+  }
+  const std::string definition =
+      "<nodedef name=\"ND_own\" node=\"own\">" + ports + "<output name=\"out\" type=\"float\"/></nodedef>" +
+      "<nodegraph name=\"NG_own\" nodedef=\"ND_own\"><output name=\"out\" type=\"float\" "
+      "interfacename=\"i7\"/></nodegraph>";
+  EXPECT_EQ(codesOf(inDocument(definition + "<nodegraph name=\"NG\"><own name=\"n\" type=\"float\">" + given +
+                               "</own><output name=\"out\" type=\"float\" nodename=\"n\"/></nodegraph>")),
+            "too-many wrong-pattern");
+  std::string attributes = "<nodegraph name=\"NG\"";
+  for (int i = 0; i < kCount; ++i) attributes += fmt::format(" a{}=\"\"", i);
+  EXPECT_EQ(codesOf(inDocument(attributes + "/>")), "xml-too-many");
+}
+
 /// Definitions of two of the one before each: the place is that of the node with which they are too many.
 TEST(MaterialXHostile, definitionsThatDouble) {
   std::string document =

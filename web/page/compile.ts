@@ -2,7 +2,7 @@
 import { load, type Graph, type GraphJson, type Lacquer, type Message, type Options, type Shader } from '../src/index';
 import type { Document } from './document';
 import { fromBase64 } from '../src/gltf';
-import type { Look } from './viewport';
+import type { Look, Slot } from './viewport';
 
 /** The compiler that the page has in it, unpacked. */
 export async function compiler(packed: string): Promise<Lacquer> {
@@ -55,12 +55,21 @@ export function withShader<T>(
   }
 }
 
+/** A procedural texture's image is looked up as its node says, which the graph has. */
+function slotOf({ texture, srgb, file, wrap, filter }: GraphJson['textures'][string]): Slot {
+  const slot: Slot = { texture: texture ?? -1, srgb };
+  if (file || texture === undefined || (wrap === undefined && filter === undefined)) return slot;
+  const kWraps = { repeat: 10497, clamp: 33071, mirror: 33648 };
+  const [s, t] = Array.isArray(wrap) ? wrap : [wrap ?? 'repeat', wrap ?? 'repeat'];
+  return { ...slot, sampler: { wrapS: kWraps[s], wrapT: kWraps[t], magFilter: filter === 'nearest' ? 9728 : 9729 } };
+}
+
 export function lookOf(of: Document, shader: Shader, graph: GraphJson): Look {
   const material = of.json.materials[of.material] ?? {};
   return {
     id: shader.id,
     block: shader.pack(),
-    slots: new Map(Object.entries(graph.textures ?? {}).map(([slot, { texture, srgb }]) => [slot, { texture: texture ?? -1, srgb }])),
+    slots: new Map(Object.entries(graph.textures ?? {}).map(([slot, of]) => [slot, slotOf(of)])),
     doubleSided: material.doubleSided === true,
     blended: material.alphaMode === 'BLEND',
   };

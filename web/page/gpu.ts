@@ -3,7 +3,7 @@ import type { Interface, Shader } from '../src/index';
 import { environmentOf, type Cube, type Environment } from './environment';
 import type { Drawable } from '../src/gltf';
 import { multiply } from '../src/math';
-import { board, dropOldest, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, type Look, type Viewport } from './viewport';
+import { board, dropOldest, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, slotKey, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
 declare const GPUMapMode: Record<'READ', number>;
@@ -233,7 +233,7 @@ export class GpuPainter {
     }
     const of = sampler ? name.replace(/_sampler$/, '') : name;
     const slot = look.slots.get(of);
-    const key = slot ? `${slot.texture}:${slot.srgb}` : '';
+    const key = slot ? slotKey(slot) : '';
     if (sampler) return this.samplerOf(slot ? view.bitmaps.get(key)?.sampler : null);
     if (of === 'environment_irradiance') return this.cubeOf(environment.irradiance);
     if (of === 'environment_specular' || of === 'environment_charlie') return this.cubeOf(environment.specular);

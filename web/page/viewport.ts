@@ -8,12 +8,21 @@ import { directional, element, kMostLights, kStudioLights, type Light } from './
 import { add, cross, lookAt, mirrors, multiply, perspective, scale, type Mat4, type Vec3 } from '../src/math';
 import { ball, flatDrawable } from './shapes';
 
+/** A glTF texture's index, its colour space, and where the graph has it how it is looked up, as a glTF sampler: else as the file's
+ * sampler says. */
+export interface Slot {
+  texture: number;
+  srgb: boolean;
+  sampler?: { wrapS: number; wrapT: number; magFilter: number };
+}
+export const slotKey = ({ texture, srgb, sampler }: Slot) => `${texture}:${srgb}:${sampler ? JSON.stringify(sampler) : ''}`;
+
 /** A material to draw with: its program, and its textures by slot. */
 export interface Look {
   id: string;
   block: Uint8Array;
-  /** glTF texture index and colour space by slot. */
-  slots: Map<string, { texture: number; srgb: boolean }>;
+  /** By slot. */
+  slots: Map<string, Slot>;
   doubleSided: boolean;
   blended: boolean;
 }
@@ -215,21 +224,21 @@ export class Viewport {
 
   /** Loads the file's textures that a look has, then draws again. */
   async loadTextures(file: GltfFile, look: Look): Promise<void> {
-    await Promise.all([...look.slots.values()].map(({ texture, srgb }) => {
-      const key = `${texture}:${srgb}`;
-      if (!this.loading.has(key)) this.loading.set(key, this.loadTexture(file, texture, srgb, key));
+    await Promise.all([...look.slots.values()].map((slot) => {
+      const key = slotKey(slot);
+      if (!this.loading.has(key)) this.loading.set(key, this.loadTexture(file, slot, key));
       return this.loading.get(key);
     }));
     this.redraw();
   }
-  private async loadTexture(file: GltfFile, texture: number, srgb: boolean, key: string): Promise<void> {
+  private async loadTexture(file: GltfFile, { texture, srgb, sampler: own }: Slot, key: string): Promise<void> {
     const { loading, gl } = this;
     const of = item(file.json.textures, texture);
     const most = Math.min(mostPixels(list(file.json.images).length), gl.getParameter(gl.MAX_TEXTURE_SIZE));
     const bitmap = of ? await image(file, sourceOf(of), most) : null;
     if (!bitmap) return;
     if (this.loading !== loading) return bitmap.close(); // of a file that has gone
-    const sampler = Object.fromEntries(Object.entries(item(file.json.samplers, of.sampler) ?? {}).filter(([, x]) => isCount(x)));
+    const sampler = own ?? Object.fromEntries(Object.entries(item(file.json.samplers, of.sampler) ?? {}).filter(([, x]) => isCount(x)));
     this.bitmaps.set(key, { bitmap, sampler });
     this.textures.set(key, this.imageTexture(bitmap, srgb, sampler));
   }
@@ -411,7 +420,7 @@ export class Viewport {
     if (name === 'environment_sheen') return this.tables.sheen;
     if (name === 'scene_behind') return maps.behind ?? this.behind;
     const slot = look.slots.get(name);
-    return (slot && this.textures.get(`${slot.texture}:${slot.srgb}`)) ?? this.colorTexture(neutral(name));
+    return (slot && this.textures.get(slotKey(slot))) ?? this.colorTexture(neutral(name));
   }
 
   private frame(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): void {

@@ -99,6 +99,8 @@ export interface GraphTexture {
   pointer: string;
   /** The image of a graph's own, a URI; may be empty. */
   file: string;
+  /** How it is looked up, where the graph says so: of a file, and in place of the sampler of the file's texture. */
+  sampler?: { wrap_s: string; wrap_t: string; mag_filter?: string };
   ui: unknown;
   /** Pointers of the textureInfos of other properties that have the same texel. */
   also: string[];
@@ -181,8 +183,9 @@ export interface TextureJson {
   texture?: number;
   /** Instead, an image's URI. */
   file?: string;
-  wrap?: 'clamp' | 'mirror' | ('repeat' | 'clamp' | 'mirror')[];
-  filter?: 'nearest';
+  /** With a texture: how it is looked up, whatever its sampler says. */
+  wrap?: 'repeat' | 'clamp' | 'mirror' | ('repeat' | 'clamp' | 'mirror')[];
+  filter?: 'linear' | 'nearest';
   /** Four linear numbers in the place of an image that is not there. */
   default?: number[];
   pointer?: string;
@@ -297,8 +300,9 @@ export interface UsedTexture {
   texcoord?: number;
   transform?: { offset: [number, number]; rotation: number; scale: [number, number] };
   stand_in?: { texel: [number, number, number, number]; color_space: 'srgb' | 'linear' };
-  /** Of a graph's own texture: its image, its sampler, and what is there without an image. */
+  /** Of a graph's own texture: its image, and what is there without one. */
   file?: string;
+  /** Of a graph's own texture, and of one that a procedural texture looks up: in place of the sampler of the file's texture. */
   sampler?: { wrap_s: string; wrap_t: string; mag_filter?: string };
   default?: number[];
 }

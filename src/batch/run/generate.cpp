@@ -129,7 +129,11 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   run.writeProgramsReport();
   if (!options.pipelines.empty() && !shard)
     run.wrote(writeFile(options.pipelines, pipelines.text(), {nullptr, options.sync}));
-  if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
+  if (!options.depfile.empty()) {
+    depfile = depfileText(path, run.inputs());  // with what the inputs include
+    run.wrote(depfile ? writeFile(options.depfile, *depfile, {nullptr, options.sync})
+                      : Result<bool>(tl::make_unexpected(depfile.error())));
+  }
   if (receipt) run.keep(*receipt);
   return run.finish();
 }

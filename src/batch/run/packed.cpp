@@ -185,7 +185,8 @@ lacquer_packed_use_texture Packer::useTexture(const UsedTexture& from, const Pac
   put(to.offset, at.offset);
   to.rotation = static_cast<float>(at.rotation);
   put(to.scale, at.scale);
-  put(to.wrap_s, to.wrap_t, to.mag_filter, to.min_filter, from.sampler);
+  to.has_sampler = from.sampler ? 1 : 0;
+  put(to.wrap_s, to.wrap_t, to.mag_filter, to.min_filter, from.sampler.value_or(TextureSampler{}));
   to.stand_in = from.stand_in ? 1 : 0;
   to.srgb = from.srgb ? 1 : 0;
   const auto& color = from.stand_in ? from.stand_in : from.color;

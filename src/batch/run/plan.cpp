@@ -299,6 +299,11 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
   ReplacingFile file(all_materials, how);
   manifest::Writer manifest([&](std::string_view text) { file.append(text); });
   run.read(files, InputKind::ByName, materials, [&](FileResult& of) { manifest.file(of.text); });
+  // With what the inputs include.
+  if (const Diagnostics wrong = unfit(plan, folder, run.inputs()); !wrong.empty()) {
+    run.wrote(tl::make_unexpected(wrong));
+    return run.finish();
+  }
   NinjaFile ninja(plan, folder, options, run.inputs());
   Strings graphs;
   for (const auto& [id, shader] : run.structures().shaders())

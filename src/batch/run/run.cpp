@@ -170,6 +170,7 @@ void Run::readAll(const std::vector<std::string>& files, const std::function<Fil
       FileResult& result = results[i];
       report(result.diagnostics, files[first + i]);
       report_.ok &= result.ok;
+      included_.insert(result.included.begin(), result.included.end());
       each(result);
       report_.materials.insert(report_.materials.end(), std::make_move_iterator(result.materials.begin()),
                                std::make_move_iterator(result.materials.end()));
@@ -276,6 +277,7 @@ void Run::wrote(const Result<bool>& written) {
 std::vector<std::string> Run::inputs() const {
   std::vector<std::string> all = inputs_;
   all.insert(all.end(), node_files_.begin(), node_files_.end());
+  all.insert(all.end(), included_.begin(), included_.end());
   return all;
 }
 

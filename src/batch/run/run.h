@@ -58,7 +58,8 @@ public:
   void writeProgramsReport();
   Report& result() { return report_; }
   Report finish();
-  /// Every file that the run reads: the inputs, then the node files.
+  /// Every file that the run reads: the inputs, the node files, and once the inputs are read what they
+  /// include.
   std::vector<std::string> inputs() const;
   /// The same and what no result depends on, but must not be written to: the cache's key.
   std::vector<std::string> readFiles() const;
@@ -90,6 +91,7 @@ private:
   std::unique_ptr<Programs> programs_;
   std::vector<Input> read_;  ///< where programs are looked for: what was read for that
   std::vector<std::string> node_files_, inputs_;
+  std::set<std::string> included_;  ///< by the inputs that were read
   Report report_;
   std::set<std::string> said_;  ///< what is wrong at lines of texts
 };

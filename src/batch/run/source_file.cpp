@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
@@ -417,10 +418,22 @@ Input parsed(const std::string& path, const Key& content, std::string& bytes, co
   return input;
 }
 
+/// An included file, which lies below the input's folder, named as that is: relative where the input is.
+std::string besideInput(const std::string& included, const std::string& input) {
+  namespace fs = std::filesystem;
+  std::error_code wrong;
+  const fs::path folder = fs::path(input).parent_path();
+  const fs::path whole = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, wrong);
+  const fs::path below = fs::path(included).lexically_relative(whole);
+  return wrong || below.empty() ? included : (folder / below).generic_string();
+}
+
 FileResult makeScene(const Input& input, const Key* key, const std::vector<std::string>& only,
                      const Setting& setting, Structures& structures) {
   if (!input.document) return unreadable(input.path, setting, input.document.error());
   FileResult result = SceneFile(input.path, only, setting, structures).run(*input.document);
+  for (const std::string& included : input.document->included)
+    result.included.push_back(besideInput(included, input.path));
   // What a file includes may change without it.
   if (key != nullptr && result.ok && input.document->included.empty() &&
       result.text.size() <= setting.options.cache_size / kCachePart) {

@@ -10,9 +10,10 @@ struct FileResult {
   std::string text;         ///< the file's entry in the manifest
   Diagnostics diagnostics;  ///< in the order of the manifest
   std::vector<MaterialReport> materials;
-  std::vector<Key> structures;      ///< distinct
-  std::vector<Pipeline> pipelines;  ///< distinct, where the options ask for them
-  std::vector<std::string> names;   ///< of all its materials; filled when only some are wanted
+  std::vector<Key> structures;        ///< distinct
+  std::vector<Pipeline> pipelines;    ///< distinct, where the options ask for them
+  std::vector<std::string> included;  ///< files whose text is a part of it
+  std::vector<std::string> names;     ///< of all its materials; filled when only some are wanted
   bool ok = true;
 };
 

@@ -270,7 +270,7 @@ Filling fillingOf(const graph::Graph& graph, const material::Material& material)
                                  [&](const auto& texture) { return texture.info.pointer == t.pointer; });
     filling.textures.push_back({t.texture, t.srgb, t.pointer,
                                 it == material.textures.end() ? nullptr : &it->info,
-                                t.file.empty() && !t.color ? nullptr : &t});
+                                t.file.empty() && !t.color && !t.own_sampler ? nullptr : &t});
   }
   return filling;
 }
@@ -287,16 +287,6 @@ bool withinLimits(const Structure& structure, const Filling& filling) {
 
 static std::vector<double> firstOf(const ir::Components& of, size_t count) {
   return {of.begin(), of.begin() + static_cast<ptrdiff_t>(count)};
-}
-
-/// Of a graph's texture that is a file.
-static TextureSampler samplerOf(const graph::Texture& texture) {
-  constexpr Wrap kWraps[] = {Wrap::Repeat, Wrap::Clamp, Wrap::Mirror};
-  TextureSampler sampler;
-  sampler.wrap_s = kWraps[static_cast<size_t>(texture.wrap[0])];
-  sampler.wrap_t = kWraps[static_cast<size_t>(texture.wrap[1])];
-  sampler.mag_filter = texture.nearest ? Filter::Nearest : Filter::Linear;
-  return sampler;
 }
 
 ContractUse useOf(const Structure& structure, const Filling& filling, const programs::Fill* fill) {
@@ -336,7 +326,7 @@ ContractUse useOf(const Structure& structure, const Filling& filling, const prog
     if (slot.image != nullptr) {
       texture.file = slot.image->file;
       texture.color = slot.image->color;
-      if (!texture.file.empty()) texture.sampler = samplerOf(*slot.image);
+      texture.sampler = samplerOf(*slot.image);
     }
     if (fill != nullptr && !fill->textures[i].own)
       texture.stand_in = fill->textures[i].texel;

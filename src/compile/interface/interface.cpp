@@ -252,4 +252,14 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
   return made;
 }
 
+std::optional<TextureSampler> samplerOf(const graph::Texture& texture) {
+  constexpr Wrap kWraps[] = {Wrap::Repeat, Wrap::Clamp, Wrap::Mirror};
+  if (texture.file.empty() && !texture.own_sampler) return std::nullopt;
+  TextureSampler sampler;
+  sampler.wrap_s = kWraps[static_cast<size_t>(texture.wrap[0])];
+  sampler.wrap_t = kWraps[static_cast<size_t>(texture.wrap[1])];
+  sampler.mag_filter = texture.nearest ? Filter::Nearest : Filter::Linear;
+  return sampler;
+}
+
 }  // namespace lacquer

@@ -172,7 +172,7 @@ void members(A& a, Of<A, UsedTexture>& of) {
   a("texture", of.texture);
   a("pointer", of.pointer);
   a.some("file", of.file);
-  if (!of.file.empty()) a("sampler", of.sampler);
+  a.some("sampler", of.sampler);
   a.some("default", of.color);
   a.some("texcoord", of.texcoord);
   a.some("transform", of.transform);

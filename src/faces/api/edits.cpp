@@ -108,7 +108,7 @@ std::vector<TextureUse> Graph::textures() const {
   if (!impl_) return textures;
   for (const graph::Texture& slot : impl_->graph.textures)
     textures.push_back({slot.name, std::string(ir::typeName(slot.type)), slot.srgb, slot.texture,
-                        slot.pointer, slot.file, slot.ui, slot.also});
+                        slot.pointer, slot.file, slot.ui, slot.also, samplerOf(slot)});
   return textures;
 }
 

@@ -39,12 +39,14 @@ void moveFiles(materialx::Element& element, const Moved& moved) {
   for (materialx::Element& child : element.children) moveFiles(child, moved);
 }
 
-/// A colour space that the document has as a whole is not said again.
-void takeColorSpaces(materialx::Element& element, const std::string& of_document) {
+/// A colour space that the elements around have is not said again.
+void takeColorSpaces(materialx::Element& element, const std::string& around) {
   for (materialx::Element& child : element.children) {
+    const std::string* own = child.find("colorspace");
+    const std::string inside = own == nullptr ? around : *own;
     std::erase_if(child.attributes,
-                  [&](const auto& one) { return one.first == "colorspace" && one.second == of_document; });
-    takeColorSpaces(child, of_document);
+                  [&](const auto& one) { return one.first == "colorspace" && one.second == around; });
+    takeColorSpaces(child, inside);
   }
 }
 

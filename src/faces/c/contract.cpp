@@ -148,6 +148,13 @@ int lacquer_contract_used_texture(const lacquer_contract* contract, size_t place
   made.srgb = t.srgb ? 1 : 0;
   made.stand_in = t.stand_in ? 1 : 0;
   if (t.stand_in) std::copy(t.stand_in->begin(), t.stand_in->end(), made.texel);
+  made.file = t.file.c_str();
+  made.has_sampler = t.sampler ? 1 : 0;
+  const lacquer::TextureSampler sampler = t.sampler.value_or(lacquer::TextureSampler());
+  made.wrap_s = static_cast<int>(sampler.wrap_s);
+  made.wrap_t = static_cast<int>(sampler.wrap_t);
+  made.mag_filter = static_cast<int>(sampler.mag_filter);
+  made.min_filter = static_cast<int>(sampler.min_filter);
   return fillRow(made, to, size);
 }
 

@@ -67,7 +67,16 @@ std::string texturesJson(const std::vector<TextureUse>& textures) {
     rawOrNull("ui", texture.ui, json);
     json.key("also").beginArray();
     for (const std::string& pointer : texture.also) json.string(pointer);
-    json.endArray().endObject();
+    json.endArray();
+    if (texture.sampler) {
+      constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"};
+      json.key("sampler").beginObject();
+      json.key("wrap_s").string(kWraps[static_cast<size_t>(texture.sampler->wrap_s)]);
+      json.key("wrap_t").string(kWraps[static_cast<size_t>(texture.sampler->wrap_t)]);
+      json.key("mag_filter").string(texture.sampler->mag_filter == Filter::Nearest ? "nearest" : "linear");
+      json.endObject();
+    }
+    json.endObject();
   }
   return json.endArray().take();
 }

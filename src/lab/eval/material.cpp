@@ -163,31 +163,38 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   return Loaded{std::move(*found), {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
 }
 
-/// The errors of an image, at the place of its name in the document.
-static Diagnostics inDocument(Diagnostics said, const graph::Texture& texture) {
-  for (Diagnostic& one : said)
-    if (texture.place.line > 0) one.place = texture.place;
+/// How a graph's texture is looked up.
+static eval::Lookup lookupOf(const graph::Texture& texture) {
+  const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
+  return {wrap(0), wrap(1), texture.nearest, texture.srgb};
+}
+
+static Diagnostics at(const Place& place, Diagnostics said) {
+  for (Diagnostic& one : said) one.place = place;
   return said;
+}
+
+/// Where a texture's file is named: in the document that was read, or in a graph.
+Place FileImages::placeOf(const graph::Texture& texture) const {
+  if (texture.place.line > 0) return texture.place;
+  const bool read = !of_graph_ && !texture.pointer.empty();
+  return {file_, 0, 0, read ? texture.pointer : fmt::format("/textures/{}/file", texture.name)};
 }
 
 Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
   if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
   if (!graph::tileToken(texture.file).empty()) return loadTiles(texture);
-  const std::string pointer = fmt::format("/textures/{}/file", texture.name);
+  const Place place = placeOf(texture);
   Result<std::shared_ptr<const eval::Image>> found =
-      image("uri " + texture.file, {file_, 0, 0, pointer},
-            [&] { return opened_->fileBytes(texture.file, pointer); });
-  if (!found) return tl::make_unexpected(inDocument(std::move(found.error()), texture));
-  const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
-  return Loaded{std::move(*found), {wrap(0), wrap(1), texture.nearest, texture.srgb}};
+      image("uri " + texture.file, place, [&] { return opened_->fileBytes(texture.file, place.pointer); });
+  if (!found) return tl::make_unexpected(at(place, std::move(found.error())));
+  return Loaded{std::move(*found), lookupOf(texture)};
 }
 
 Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) {
-  const std::string pointer = fmt::format("/textures/{}/file", texture.name);
-  const Place place{file_, 0, 0, pointer};
+  const Place place = placeOf(texture);
   const std::string key = "tiles " + texture.file;
-  const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
-  const eval::Lookup lookup{wrap(0), wrap(1), texture.nearest, texture.srgb};
+  const eval::Lookup lookup = lookupOf(texture);
   if (const auto known = images_.find(key); known != images_.end()) {
     known->second.used = ++uses_;
     return Loaded{known->second.image, lookup};
@@ -195,16 +202,16 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
   std::vector<std::shared_ptr<const eval::Image>> layers;
   for (size_t n = 0; n < kMostTiles; ++n) {
     const std::string uri = graph::tileFile(texture.file, n);
-    Result<std::string> bytes = opened_->fileBytes(uri, pointer);
+    Result<std::string> bytes = opened_->fileBytes(uri, place.pointer);
     if (!bytes && bytes.error()[0].code == "image-missing") continue;
     Result<std::shared_ptr<const eval::Image>> found =
         image("uri " + uri, place, [&] { return std::move(bytes); });
-    if (!found) return tl::make_unexpected(inDocument(std::move(found.error()), texture));
+    if (!found) return tl::make_unexpected(at(place, std::move(found.error())));
     layers.resize(n + 1);
     layers[n] = std::move(*found);
   }
   if (layers.empty()) {
-    return fail("image-missing", texture.place.line > 0 ? texture.place : place,
+    return fail("image-missing", place,
                 fmt::format("no tile from {} to {} is there", quote(graph::tileFile(texture.file, 0)),
                             quote(graph::tileFile(texture.file, kMostTiles - 1))),
                 {});
@@ -668,6 +675,7 @@ Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const 
   if (original.color && nothing) return BoundTexture{*original.color, {}, {}};
   Result<FileImages::Loaded> loaded =
       original.file.empty() ? images_.load(original.texture, slot.srgb) : images_.load(original);
+  if (loaded && original.own_sampler) loaded->lookup = lookupOf(original);
   if (loaded) return BoundTexture{{}, loaded->image, loaded->lookup};
   if (original.color) {
     for (Diagnostic& d : loaded.error()) {

@@ -38,6 +38,7 @@ public:
   Result<Loaded> load(int texture, bool srgb);
   /// The image and the sampler of a graph's texture that is a file.
   Result<Loaded> load(const graph::Texture& texture);
+  Place placeOf(const graph::Texture& texture) const;
   /// What load() has to say beside its errors, once: images that were passed over for another one. And what
   /// note() was told.
   Diagnostics takeNotes() { return std::exchange(notes_, {}); }

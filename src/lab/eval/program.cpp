@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <string>
+#include <unordered_map>
+#include <vector>
 
 #include "ir/fold.h"
 #include "ir/loops.h"
@@ -25,12 +28,20 @@ struct Virtual {
   bool uniform = false;
 };
 
-size_t indexOf(std::vector<std::string>& names, const std::string& name) {
-  const auto it = std::find(names.begin(), names.end(), name);
-  if (it != names.end()) return static_cast<size_t>(it - names.begin());
-  names.push_back(name);
-  return names.size() - 1;
-}
+/// Names in the order in which they were first asked for.
+class Numbered {
+public:
+  explicit Numbered(std::vector<std::string>& names) : names_(names) {}
+  uint32_t of(const std::string& name) {
+    const auto [it, fresh] = numbers_.try_emplace(name, static_cast<uint32_t>(names_.size()));
+    if (fresh) names_.push_back(name);
+    return it->second;
+  }
+
+private:
+  std::vector<std::string>& names_;
+  std::unordered_map<std::string, uint32_t> numbers_;  // looked up, never walked
+};
 
 class Compiler {
 public:
@@ -130,7 +141,7 @@ private:
            "bind a column of that name");
       return result;
     }
-    const auto index = static_cast<uint32_t>(indexOf(program_.columns, input.name));
+    const auto index = columns_.of(input.name);
     for (size_t i = 0; i < components; ++i) {
       Instruction instruction{Step::Load, Op::Input, static_cast<uint8_t>(i), -1, index};
       instruction.whole = ir::isWhole(ir::partType(input.type));
@@ -157,7 +168,7 @@ private:
            "bind as many lights as the module sums");
       return result;
     }
-    const auto index = static_cast<uint32_t>(indexOf(program_.light_fields, input.name));
+    const auto index = light_fields_.of(input.name);
     for (size_t i = 0; i < components; ++i) {
       result[i] = emit({Step::Light, Op::Input, static_cast<uint8_t>(i), input.element, index}, false);
     }
@@ -207,9 +218,7 @@ private:
 
   std::vector<Register> texture(const ir::Value& value) {
     const ir::Input& slot = dag_.inputOf(value.args[0]);
-    Instruction instruction{
-        Step::Texture, value.op, 0, -1,
-        static_cast<uint32_t>(indexOf(program_.textures, module_.textures[slot.field].name))};
+    Instruction instruction{Step::Texture, value.op, 0, -1, textures_.of(module_.textures[slot.field].name)};
     const std::vector<Register>& coordinate = of(value.args[1]);
     std::copy(coordinate.begin(), coordinate.end(), instruction.args.begin());
     if (value.op == Op::TextureLod) instruction.args[3] = of(value.args[2])[0];
@@ -226,7 +235,7 @@ private:
 
   std::vector<Register> textureSize(const ir::Value& value) {
     const ir::Input& slot = dag_.inputOf(value.args[0]);
-    const auto texture = static_cast<uint32_t>(indexOf(program_.textures, module_.textures[slot.field].name));
+    const auto texture = textures_.of(module_.textures[slot.field].name);
     return {sizeAlong(value.payload, texture, of(value.args[1])[0])};
   }
 
@@ -399,7 +408,7 @@ private:
     std::vector<Register> result = loadLight(input);  // checks what is bound
     if (!wrong_.empty()) return result;
     program_.body.resize(program_.body.size() - result.size());
-    const auto index = static_cast<uint32_t>(indexOf(program_.light_fields, name));
+    const auto index = light_fields_.of(name);
     for (size_t i = 0; i < result.size(); ++i) {
       result[i] = emit({Step::ListedLight,
                         Op::Element,
@@ -474,6 +483,7 @@ private:
   const Bindings& bindings_;
   size_t points_;
   Program program_;
+  Numbered columns_{program_.columns}, light_fields_{program_.light_fields}, textures_{program_.textures};
   Diagnostics wrong_;
   bool half_ = false;   ///< what is being compiled is relaxed
   bool whole_ = false;  ///< it is an integer

@@ -367,9 +367,12 @@ uint32_t Dag::constantIndex(const Components& key) {
   return index;
 }
 
-/// Of equal inputs the same number; most of others differ in it.
+/// Of equal inputs the same number; most of others differ in it. Names differ at their ends, if anywhere.
 static uint64_t keyOf(const Input& input) {
-  uint64_t key = static_cast<uint64_t>(input.kind);
+  uint64_t end = input.name.size();
+  const size_t length = std::min(input.name.size(), sizeof(end));
+  std::memcpy(&end, input.name.data() + (input.name.size() - length), length);
+  uint64_t key = static_cast<uint64_t>(input.kind) + end;
   for (const uint32_t part : {input.field, input.block, input.index}) key = key * 0x9E3779B97F4A7C15U + part;
   return key;
 }

@@ -21,7 +21,8 @@ bool isSame(const graph::Parameter& a, const graph::Parameter& b) {
 
 bool isSame(const graph::Texture& a, const graph::Texture& b) {
   return a.name == b.name && a.type == b.type && a.srgb == b.srgb && a.texture == b.texture &&
-         a.file == b.file && a.wrap == b.wrap && a.nearest == b.nearest && a.color == b.color;
+         a.file == b.file && a.own_sampler == b.own_sampler && a.wrap == b.wrap && a.nearest == b.nearest &&
+         a.color == b.color;
 }
 
 /// A name that no item of the list has.

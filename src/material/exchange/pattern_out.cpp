@@ -523,7 +523,8 @@ void PatternsOut::sampler(Element& element, const lang::NodeDecl& decl, const gr
   const std::string_view family = familyOf(decl);
   std::array<graph::Wrap, 2> wrap = texture.wrap;
   bool nearest = texture.nearest;
-  if (texture.texture >= 0 && static_cast<size_t>(texture.texture) < scene_.textures.size()) {
+  if (!texture.own_sampler && texture.texture >= 0 &&
+      static_cast<size_t>(texture.texture) < scene_.textures.size()) {
     const gltf::Texture& of = scene_.textures[static_cast<size_t>(texture.texture)];
     constexpr int kClamp = 33071;
     constexpr int kMirror = 33648;

@@ -105,15 +105,15 @@ private:
   std::map<std::string, size_t, std::less<>> places_;
 };
 
-/// A value of an input as the extension has it: always an array.
-Json arrayOf(const Element& input) {
+/// A value of an input as the extension has it: numbers in an array, even one; a boolean or a text as it is.
+Json valueJson(const Element& input) {
   Json made = Json::array();
   const std::string_view type = input.get("type");
   const std::optional<ir::Type> known = materialx::typeOf(type);
   if (type == "boolean") {
-    made.push_back(Json(input.get("value") == "true"));
+    return Json(input.get("value") == "true");
   } else if (!known || ir::isTexture(*known) || type == "string") {
-    made.push_back(Json(input.get("value")));
+    return Json(input.get("value"));
   } else if (const auto numbers = materialx::numbersOf(input.get("value"))) {
     for (const double x : *numbers)
       made.push_back(type == "integer" ? Json(static_cast<int64_t>(x)) : Json(x));
@@ -121,19 +121,22 @@ Json arrayOf(const Element& input) {
   return made;
 }
 
-Json portOf(const Element& port) {
+/// By their names the places of a graph's nodes, by which the extension refers to them.
+using Places = std::map<std::string, uint64_t, std::less<>>;
+
+Json portOf(const Element& port, const Places& places) {
   Json made = Json::object();
   made["nodetype"] = port.category;
   made["type"] = port.get("type");
   for (const char* key : {"colorspace", "unit", "unittype"}) {
     if (const std::string* text = port.find(key)) made[key] = *text;
   }
-  if (const std::string* node = port.find("nodename")) made["node"] = *node;
+  if (const std::string* node = port.find("nodename")) made["node"] = places.at(*node);
   if (const std::string* output = port.find("output")) made["output"] = *output;
   if (const std::string* texture = port.find("texture"))
     made["texture"] = static_cast<uint64_t>((*materialx::numbersOf(*texture))[0]);
   else if (port.find("value") != nullptr)
-    made["value"] = arrayOf(port);
+    made["value"] = valueJson(port);
   return made;
 }
 
@@ -149,13 +152,13 @@ void takes(const Element& element, Taken& taken) {
   }
 }
 
-Json nodeOf(const Element& element, const Taken& taken) {
+Json nodeOf(const Element& element, const Taken& taken, const Places& places) {
   Json made = Json::object();
   made["name"] = element.name();
   made["nodetype"] = element.category;
   made["type"] = element.get("type");
   Json inputs = Json::object();
-  for (const Element& input : element.children) inputs[std::string(input.name())] = portOf(input);
+  for (const Element& input : element.children) inputs[std::string(input.name())] = portOf(input, places);
   made["inputs"] = std::move(inputs);
   Json outputs = Json::object();
   const auto it = taken.find(std::string(element.name()));
@@ -303,12 +306,14 @@ ProceduralsOut::Written ProceduralsOut::write(graph::Graph flat, std::string_vie
   made["type"] = surfaces[0].inputs.size() == 1 ? surfaces[0].inputs[0].type : "multioutput";
   made["inputs"] = Json::object();
   Json nodes = Json::array();
-  for (const Element& element : root.children) nodes.push_back(nodeOf(element, taken));
+  Places places;
+  for (const Element& element : root.children) places.emplace(element.name(), places.size());
+  for (const Element& element : root.children) nodes.push_back(nodeOf(element, taken, places));
   made["nodes"] = std::move(nodes);
   Json ports = Json::object();
   for (Element& port : shader.children) {
     port.category = "output";
-    ports[std::string(port.name())] = portOf(port);
+    ports[std::string(port.name())] = portOf(port, places);
   }
   made["outputs"] = std::move(ports);
   list_.push_back(std::move(made));

@@ -145,6 +145,10 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
   }
   const Result<std::string> relative = relativePath(uri, place);
   if (!relative) return tl::make_unexpected(relative.error());
+  constexpr size_t kLongestPath = 4095;  // of Linux; a name within it has 255 bytes
+  if (relative->size() > kLongestPath)
+    return missing(fmt::format("the name of the file has {} bytes", relative->size()),
+                   fmt::format("a path has at most {}", kLongestPath));
   const std::string folder = std::filesystem::path(path_).parent_path().string();
   const std::optional<std::string> file = resolveBelow(folder, *relative, access_.allow);
   if (!file) {

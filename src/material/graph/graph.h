@@ -185,8 +185,8 @@ std::string_view tileToken(std::string_view file);
 std::string tileFile(std::string file, size_t tile);
 
 struct Texture : ir::TextureSlot {
-  /// A file below the folder of the graph's; empty for glTF's texture, whose sampler says the rest.
-  std::string file{};
+  std::string file{};          ///< below the folder of the graph's; empty for glTF's texture
+  bool own_sampler = false;    ///< of glTF's texture: what follows counts, and not its sampler
   std::array<Wrap, 2> wrap{};  ///< s and t
   bool nearest = false;        ///< else linear
   /// What is there without an image: linear, or encoded where `srgb` says so for its RGB.

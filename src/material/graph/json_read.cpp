@@ -434,7 +434,7 @@ void Reader::textureIndex(const Json& json, const Path& path, Texture& texture) 
   }
 }
 
-/// How an image that is a file is looked up.
+/// How an image is looked up.
 void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
   constexpr std::array<std::string_view, 3> kWraps = {"repeat", "clamp", "mirror"};
   constexpr std::array<std::string_view, 2> kFilters = {"linear", "nearest"};
@@ -481,6 +481,8 @@ void Reader::texture(std::string_view name, const Json& json, const Path& path) 
   if (const Json* index = json::member(json, "texture")) textureIndex(*index, Path(path, "texture"), slot);
   slot.file = optionalText(json, path, "file");
   sampler(json, path, slot);
+  slot.own_sampler =
+      slot.texture >= 0 && slot.file.empty() && (json::member(json, "wrap") || json::member(json, "filter"));
   if (const Json* color = json::member(json, "default"))
     parameterValue(*color, Path(path, "default"), "default", ir::Type::Vec4, slot.color.emplace());
   slot.pointer = optionalText(json, path, "pointer");

@@ -128,7 +128,7 @@ std::string texture(const Texture& slot) {
   if (!slot.file.empty()) text += ", " + member("file", json::quotedText(slot.file));
   if (slot.wrap[0] != slot.wrap[1])
     text += fmt::format(", \"wrap\": [{}, {}]", wrap(0), wrap(1));
-  else if (slot.wrap[0] != Wrap::Repeat)
+  else if (slot.wrap[0] != Wrap::Repeat || slot.own_sampler)
     text += fmt::format(", \"wrap\": {}", wrap(0));
   if (slot.nearest) text += ", \"filter\": \"nearest\"";
   if (slot.color) text += ", " + member("default", value(ir::Type::Vec4, *slot.color));

@@ -158,11 +158,11 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
                                      Document& document) {
   const Json* extensions = json::member(root, "extensions");
   const Json* found = extensions == nullptr ? nullptr : json::member(*extensions, "KHR_texture_procedurals");
-  if (found == nullptr) return {};
   const Json* required = json::member(root, "extensionsRequired");
   bool needed = false;
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i)
     needed = needed || (*required)[i] == Json("KHR_texture_procedurals");
+  if (found == nullptr) return {{}, needed, {}};
   materialx::ProceduralOptions how{options.limits, needed, {}, namesOf(schema), schema.definitions};
   if (const Json* textures = json::member(root, "textures"); textures != nullptr && textures->is_array())
     how.textures = textures->size();
@@ -247,7 +247,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   gltf::readScene(*root, document);
   const materialx::Procedurals procedurals = proceduralsOf(*root, schema, options, document);
   checkSwizzles(procedurals, document);
-  const FileFacts facts{name, document, options.permissive, procedurals.patterns ? &procedurals : nullptr};
+  const FileFacts facts{name, document, options.permissive, &procedurals};
   Report of_scene(name, document.diagnostics);
   checkExtensions(*root, schema, of_scene);
   if (const Json* materials = json::member(*root, "materials")) {

@@ -327,16 +327,24 @@ void MaterialReader::procedural(const Json& json, const Path& path) {
                     fmt::format("the file has {}", countOf(list.size(), "procedural")));
   const auto index = static_cast<size_t>(number->get<uint64_t>());
   const materialx::Procedural& one = list[index];
-  const Json* named = member(json, "output");
-  const std::string wanted = named != nullptr && named->is_string() ? named->text() : std::string();
   // Its own error says so, too.
   if (one.wrong) return fallback(path, fmt::format("the procedural {} is wrong", index));
-  const std::string_view output = one.output(wanted);
+  std::vector<std::string_view> names;
+  for (const auto& [name, group] : one.outputs) names.push_back(name);
+  const Json* named = member(json, "output");
+  std::string wanted = named != nullptr && named->is_string() ? named->text() : std::string();
+  // Its number, too: its place among the outputs.
+  if (named != nullptr && named->is_number_unsigned() && named->get<uint64_t>() < names.size())
+    wanted = names[named->get<uint64_t>()];
+  const std::string has = names.empty() ? "it has none" : fmt::format("it has {}", listOf(names));
+  if (named == nullptr && names.size() > 1)
+    return fallback(path, fmt::format("the procedural {} has several outputs, and none is named", index),
+                    has);
+  const bool some = named == nullptr || !wanted.empty();
+  const std::string_view output = some ? one.output(wanted) : std::string_view();
   if (output.empty()) {
-    std::vector<std::string_view> names;
-    for (const auto& [name, group] : one.outputs) names.push_back(name);
-    return fallback(path, fmt::format("the procedural {} has no output {}", index, quote(wanted)),
-                    names.empty() ? "it has none" : fmt::format("it has {}", listOf(names)));
+    const std::string of = named == nullptr || named->is_string() ? quote(wanted) : printable(named->dump());
+    return fallback(path, fmt::format("the procedural {} has no output {}", index, of), has);
   }
   texture_->group = one.group;
   texture_->output = output;

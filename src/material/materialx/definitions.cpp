@@ -76,7 +76,9 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
   addBareNames(root_, nodedefs_, nodegraphs_);
   for (Flaw& flaw : flawsOf(root_, nodedefs_, nodegraphs_)) addBounded(wrong_, std::move(flaw.said));
   if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
+  makeConversionsUnlit(root_);
   addTangentSpace(root_);
+  root_.index();
   return std::make_shared<const Element>(std::move(root_));
 }
 

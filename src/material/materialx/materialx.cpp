@@ -46,6 +46,7 @@ public:
   MaterialsReader(Document& document, const lang::Library& library, bool translates, PatternOptions options)
       : document_(document),
         translates_(translates),
+        most_(options.most),
         patterns_({&document.root}, library, std::move(options)) {}
 
   /// `said`: what was wrong with variants.
@@ -77,8 +78,8 @@ private:
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
   void displacement(const Element& at);
   void refuse(const Element& at, std::string_view name);
-  void patternsAlone();
-  void pattern(const Element& owner, const Element& output, const std::string& name);
+  Result<void> patternsAlone();
+  void pattern(const Element& owner, const Element& output, const std::string& name, bool instance = false);
   void tellRange(const Element& owner, const Element& output, Diagnostics& said);
   static bool isSurface(const Element& element) {
     const std::vector<std::string_view> names = translated();
@@ -88,8 +89,8 @@ private:
 
   Document& document_;
   bool translates_;
+  uint64_t most_;  ///< patterns
   Patterns patterns_;
-  Diagnostics wrong_;
   std::vector<Made> made_;
   std::deque<Element> uses_;  ///< inputs that take a nodegraph's output, for patterns
 };
@@ -225,16 +226,14 @@ void MaterialsReader::refuse(const Element& at, std::string_view name) {
   made_.push_back(std::move(made));
 }
 
-/// A pattern's output, as a colour without light.
-void MaterialsReader::pattern(const Element& owner, const Element& output, const std::string& name) {
+/// A pattern's output, as a colour without light. `instance`: what stands beside the nodegraph is connected
+/// to its inputs, and so reaches an instance of it alone.
+void MaterialsReader::pattern(const Element& owner, const Element& output, const std::string& name,
+                              bool instance) {
   const std::optional<ir::Type> type = typeOf(output.get("type"));
   if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return;
   Made made;
   made.name = name;
-  // What stands beside a nodegraph reaches an instance of it alone.
-  const bool instance = std::any_of(owner.children.begin(), owner.children.end(), [](const Element& child) {
-    return child.category == "input" && isConnected(child);
-  });
   Element use{"input",
               {{"name", std::string(output.name())}, {"type", std::string(output.get("type"))}},
               {},
@@ -271,17 +270,33 @@ void MaterialsReader::tellRange(const Element& owner, const Element& output, Dia
   if (!type || (*type != ir::Type::Float && !ir::isFloatVector(*type))) return;
   const Result<ir::Components> read = valueOf(*number, *type, patterns_.units());
   if (!read || std::all_of(read->begin(), read->end(), [](double x) { return x >= 0 && x <= 1; })) return;
+  const std::string_view space = number->get("colorspace");
+  const bool other = ir::isFloatVector(*type) && !space.empty() && space != "lin_rec709";
+  const std::string linear = other ? fmt::format(" of {}, in lin_rec709 {:.4g}, {:.4g}, {:.4g}", space,
+                                                 (*read)[0], (*read)[1], (*read)[2])
+                                   : std::string();
   said.push_back(
       {"out-of-range",
        Severity::Warning,
        number->place,
-       fmt::format("the pattern {} is {}", quote(output.name()), quote(number->get("value"))),
+       fmt::format("the pattern {} is {}{}", quote(output.name()), quote(number->get("value")), linear),
        "its colour is drawn from 0 to 1, and the nearest numbers are taken: a surface_unlit has others",
        {}});
 }
 
-void MaterialsReader::patternsAlone() {
+Result<void> MaterialsReader::patternsAlone() {
   const Element& root = document_.root;
+  uint64_t outputs_of_all = 0;
+  for (const Element& child : root.children) {
+    if (child.category != "nodegraph") continue;
+    outputs_of_all +=
+        static_cast<uint64_t>(std::count_if(child.children.begin(), child.children.end(),
+                                            [](const Element& e) { return e.category == "output"; }));
+  }
+  if (outputs_of_all > most_)
+    return fail("too-many", root.place,
+                fmt::format("the nodegraphs have {} outputs, more than {}", outputs_of_all, most_),
+                raising("nodes"));
   std::set<std::string_view> bodies;  // of definitions
   for (const Element& child : root.children)
     if (child.category == "implementation") bodies.insert(child.get("nodegraph"));
@@ -291,12 +306,17 @@ void MaterialsReader::patternsAlone() {
     if (child.category != "nodegraph" || !child.get("nodedef").empty()) continue;
     const auto outputs = std::count_if(child.children.begin(), child.children.end(),
                                        [](const Element& e) { return e.category == "output"; });
+    const bool instance = std::any_of(child.children.begin(), child.children.end(), [](const Element& e) {
+      return e.category == "input" && isConnected(e);
+    });
     for (const Element& output : child.children) {
       if (output.category != "output" || !isConnected(output)) continue;
       pattern(child, output,
-              outputs == 1 ? std::string(child.name()) : fmt::format("{}/{}", child.name(), output.name()));
+              outputs == 1 ? std::string(child.name()) : fmt::format("{}/{}", child.name(), output.name()),
+              instance);
     }
   }
+  return {};
 }
 
 Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagnostics said) {
@@ -325,7 +345,9 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
         material(child, child.name(), {&child, &root}, {});
     }
   }
-  if (made_.empty()) patternsAlone();
+  if (made_.empty()) {
+    if (Result<void> read = patternsAlone(); !read) return tl::make_unexpected(std::move(read.error()));
+  }
   for (size_t i = 0, any = made_.size(); any == 0 && i < root.children.size(); ++i) {
     if (root.children[i].category != "nodedef") refuse(root.children[i], root.children[i].name());
   }
@@ -383,7 +405,9 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
   if (!document) return tl::make_unexpected(document.error());
   Diagnostics said = std::move(document->said);
   const VariantMaterials variants = addVariants(document->root, said);
+  makeConversionsUnlit(document->root);
   addTangentSpace(document->root);
+  document->root.index();
   return MaterialsReader(*document, library, options.translate,
                          {true,
                           options.limits.nodes,
@@ -400,14 +424,19 @@ Procedurals readProcedurals(const Json& extension, const std::string& path, cons
   Diagnostics wrong;
   Element root;
   root.category = "materialx";
-  root.children = readProcedurals(extension, path, options.limits, options.textures, wrong);
+  ProceduralElements read = readProcedurals(extension, path, options.limits, options.textures, wrong);
+  const size_t count = read.list.size();
+  root.children = std::move(read.list);
+  std::move(read.definitions.begin(), read.definitions.end(), std::back_inserter(root.children));
+  root.index();
   Patterns patterns({&root}, library,
                     {false, options.limits.nodes, options.animated, options.reserved, false, nullptr,
                      options.definitions.get()});
   Procedurals made;
   made.required = options.required;
   std::vector<Scope*> scopes;
-  for (const Element& graph : root.children) {
+  for (size_t i = 0; i < count; ++i) {
+    const Element& graph = root.children[i];
     Procedural& one = made.list.emplace_back();
     Scope*& scope = scopes.emplace_back(nullptr);
     one.wrong = graph.children.empty();

@@ -90,6 +90,22 @@ bool Patterns::takesTiles(std::string_view category) const {
   return std::any_of(forms.begin(), forms.end(), [](const lang::NodeDecl* form) { return isOfTiles(*form); });
 }
 
+namespace {
+
+/// Which input of a node a definition has not, or has of another type; empty where it is none.
+std::string unlikeIn(const Element& node, const Element& nodedef) {
+  for (const Element& input : node.children) {
+    if (input.category != "input" || input.find(kOfVariant) != nullptr) continue;
+    const Element* port = nodedef.child("input", input.name());
+    if (port == nullptr) return fmt::format(": it has no input {}", quote(input.name()));
+    if (!input.get("type").empty() && port->get("type") != input.get("type"))
+      return fmt::format(": its input {} is of the type {}", quote(input.name()), quote(port->get("type")));
+  }
+  return {};
+}
+
+}  // namespace
+
 void Patterns::unknownNode(const Element& element) {
   if (const std::optional<Refusal> why = refused(element))
     return error(element, "unsupported-closure",
@@ -99,8 +115,8 @@ void Patterns::unknownNode(const Element& element) {
     return error(
         element, "no-such-definition",
         fmt::format("no definition of {} has this type, version and these inputs", quote(element.category)),
-        fmt::format("{}{} stands in {}:{}", quote(one.nodedef->name()), of.size() > 1 ? ", the first," : "",
-                    one.nodedef->place.file, one.nodedef->place.line));
+        fmt::format("{}{} stands in {}:{}{}", quote(one.nodedef->name()), of.size() > 1 ? ", the first," : "",
+                    one.nodedef->place.file, one.nodedef->place.line, unlikeIn(element, *one.nodedef)));
   }
   if (const auto only = of_targets_.find(withoutNamespace(element.category)); only != of_targets_.end())
     return error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),

@@ -45,8 +45,18 @@ Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Lib
 
 const Siblings& Patterns::siblingsOf(const Element& owner) {
   const auto [it, fresh] = siblings_.try_emplace(&owner);
+  if (!fresh) return it->second;
   for (const Element& child : owner.children) {
-    if (fresh && isNodeElement(child) && !child.name().empty()) it->second.emplace(child.name(), &child);
+    if (isNodeElement(child) && !child.name().empty()) it->second.emplace(child.name(), &child);
+  }
+  return it->second;
+}
+
+const std::vector<const Element*>& Patterns::inputElements(const Element& owner) {
+  const auto [it, fresh] = inputs_.try_emplace(&owner);
+  if (!fresh) return it->second;
+  for (const Element& child : owner.children) {
+    if (child.category == "input") it->second.push_back(&child);
   }
   return it->second;
 }
@@ -162,8 +172,9 @@ const Element* Patterns::merged(const Element& nodedef, size_t depth) {
   if (base == nullptr || base == &nodedef) return &nodedef;
   Element& whole = merged_.emplace_back(nodedef);
   for (const Element& port : merged(*base, depth + 1)->children) {
-    if (whole.child(port.category, port.name()) == nullptr) whole.children.push_back(port);
+    if (nodedef.child(port.category, port.name()) == nullptr) whole.children.push_back(port);
   }
+  whole.index();
   merges_.emplace(&nodedef, &whole);
   return &whole;
 }
@@ -266,9 +277,8 @@ void Patterns::prepare(Scope& scope, const Element& owner, const Element* inputs
     scope.model_ = definitions_[of->second].model;
   scope.group_.name = group_names_.free(graphName(name));
   scope.siblings_ = &siblingsOf(owner);
-  for (const Element& child : inputs == nullptr ? owner.children : inputs->children) {
-    if (inputs != nullptr && child.category == "input") scope.inputs_.emplace(child.name(), &child);
-  }
+  if (inputs == nullptr) return;
+  for (const Element* input : inputElements(*inputs)) scope.inputs_.emplace(input->name(), input);
 }
 
 const std::string& Patterns::group(const Element& nodegraph) {
@@ -356,8 +366,13 @@ Scope& Patterns::body(const Element& owner, std::string_view name) {
 /// What instances of the body are given, with their values as defaults. Texts are no values of a graph: who
 /// asks for one gets the text.
 void Patterns::groupInputs(Scope& scope) {
-  for (const Element& input : scope.interface_->children) {
-    if (input.category != "input") continue;
+  if (const size_t count = inputElements(*scope.interface_).size(); count > options_.most)
+    return error(
+        *scope.interface_, "too-many",
+        fmt::format("{} has {} inputs, more than {}", quote(scope.interface_->name()), count, options_.most),
+        raising("nodes"));
+  for (const Element* one : inputElements(*scope.interface_)) {
+    const Element& input = *one;
     for (const ClosurePart& part : closureParts(input.get("type"))) {
       graph::GroupInput made;
       made.name = fmt::format("{}_{}", graphName(input.name()), part.name);
@@ -623,7 +638,8 @@ void Patterns::node(Scope& scope, const Element& element) {
   if (++count_ > options_.most) {
     if (count_ == options_.most + 1)
       error(element, "too-many",
-            fmt::format("the document's patterns have more than {} nodes", options_.most), raising("nodes"));
+            fmt::format("the document's patterns and surfaces have more than {} nodes", options_.most),
+            raising("nodes"));
     broken_.insert(scope.group_.name);
     return;
   }

@@ -238,6 +238,7 @@ private:
   void spread();
 
   const Siblings& siblingsOf(const Element& owner);
+  const std::vector<const Element*>& inputElements(const Element& owner);
   const Definition* definition(const Element& nodedef) const;
   template <class Wanted>
   std::string suggest(std::string_view name, const Element& owner, Wanted wanted);
@@ -256,9 +257,10 @@ private:
   std::deque<Scope> scopes_;
   std::unordered_map<const Element*, Scope*> groups_;  ///< looked up, never walked
   NameSet group_names_, parameter_names_, texture_names_;
-  std::unordered_map<const Element*, Siblings> siblings_;        ///< of owners
-  Siblings nodegraphs_, nodedefs_, geomprops_;                   ///< of the documents
-  std::unordered_map<std::string_view, const Element*> bodies_;  ///< by the definition
+  std::unordered_map<const Element*, Siblings> siblings_;                   ///< of owners
+  std::unordered_map<const Element*, std::vector<const Element*>> inputs_;  ///< of interfaces
+  Siblings nodegraphs_, nodedefs_, geomprops_;                              ///< of the documents
+  std::unordered_map<std::string_view, const Element*> bodies_;             ///< by the definition
   std::map<std::string_view, std::string_view> geometry_tokens_;
   std::map<std::string_view, const Element*> of_targets_;  ///< definitions for a target, by their nodes
   /// Nodes and inputs that these have.

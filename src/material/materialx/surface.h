@@ -115,4 +115,7 @@ inline constexpr std::string_view kMadeOutput = "made_output";
 /// Gives a nodegraph an output in tangent space beside each that is a normal map's, for Surface::normal().
 void addTangentSpace(Element& document);
 
+/// Each `convert` to a surfaceshader becomes the `surface_unlit` that it stands for.
+void makeConversionsUnlit(Element& document);
+
 }  // namespace lacquer::materialx

@@ -387,6 +387,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const El
   if (const std::string* number = from->find("texture")) {
     const std::optional<std::vector<double>> index = numbersOf(*number);
     texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
+    texture.own_sampler = true;
   } else {
     texture.file = fileOf(scope, std::move(holders), *from);
     checkTokens(*from, texture.file);

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "materialx/patterns.h"
+#include "materialx/surface.h"
 
 namespace lacquer::materialx {
 
@@ -26,7 +28,58 @@ void withoutOutputs(Element& interface) {
   std::erase_if(interface.children, [](const Element& one) { return one.category == "output"; });
 }
 
+/// A conversion to a surfaceshader as the surface_unlit that its definition in the standard library is.
+/// Colours with alpha have that as opacity; all but colours are converted to one by a node beside it.
+void makeUnlit(Element& scope) {
+  std::vector<Element> more;
+  for (Element& node : scope.children) {
+    const Element* in = node.child("input", "in");
+    if (node.category != "convert" || node.get("type") != "surfaceshader" || in == nullptr) continue;
+    const std::string type(in->get("type"));
+    Element given = *in;
+    const auto beside = [&](std::string_view category, std::string_view made_type) -> Element& {
+      Element& made = more.emplace_back();
+      made.category = category;
+      made.place = node.place;
+      made.set("name", fmt::format("{} {}", node.name(), category));
+      made.set("type", std::string(made_type));
+      made.children.push_back(given);
+      return made;
+    };
+    const auto connected = [&](std::string_view name, const Element& to) {
+      Element port{"input",
+                   {{"name", std::string(name)},
+                    {"type", std::string(to.get("type"))},
+                    {"nodename", std::string(to.name())}},
+                   {},
+                   node.place};
+      return port;
+    };
+    std::vector<Element> inputs;
+    if (type == "color3") {
+      inputs.push_back(renamed(given, "input", "emission_color"));
+    } else {
+      inputs.push_back(connected("emission_color", beside("convert", "color3")));
+    }
+    if (type == "color4") {
+      Element& alpha = beside("extract", "float");
+      alpha.children.push_back(
+          {"input", {{"name", "index"}, {"type", "integer"}, {"value", "3"}}, {}, node.place});
+      inputs.push_back(connected("opacity", alpha));
+    }
+    node.category = "surface_unlit";
+    node.children = std::move(inputs);
+  }
+  std::move(more.begin(), more.end(), std::back_inserter(scope.children));
+}
+
 }  // namespace
+
+void makeConversionsUnlit(Element& document) {
+  makeUnlit(document);
+  for (Element& child : document.children)
+    if (child.category == "nodegraph") makeUnlit(child);
+}
 
 /// Adds a definition that no document has.
 void Patterns::define(const Element& nodedef, const Element& graph) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "support/text.h"
 
@@ -30,10 +32,29 @@ void Element::set(std::string_view attribute, std::string value) {
 }
 
 const Element* Element::child(std::string_view of, std::string_view named) const {
+  if (!sorted.empty() && sorted.size() == children.size()) {
+    const auto nameOf = [&](uint32_t place) { return children[place].name(); };
+    for (auto at = std::ranges::lower_bound(sorted, named, {}, nameOf);
+         at != sorted.end() && nameOf(*at) == named; ++at) {
+      if (children[*at].category == of) return &children[*at];
+    }
+    return nullptr;
+  }
   for (const Element& child : children) {
     if (child.category == of && child.name() == named) return &child;
   }
   return nullptr;
+}
+
+void Element::index() {
+  constexpr size_t kMany = 16;
+  sorted.clear();
+  if (children.size() >= kMany) {
+    sorted.resize(children.size());
+    std::iota(sorted.begin(), sorted.end(), 0U);
+    std::ranges::stable_sort(sorted, {}, [&](uint32_t place) { return children[place].name(); });
+  }
+  for (Element& child : children) child.index();
 }
 
 bool isNodeElement(const Element& element) {
@@ -121,7 +142,15 @@ std::optional<std::vector<double>> numbersOf(std::string_view value) {
     }
     if (one.starts_with('+')) one.remove_prefix(1);
     double number = 0;
-    const auto [end, error] = std::from_chars(one.data(), one.data() + one.size(), number);
+    auto [end, error] = std::from_chars(one.data(), one.data() + one.size(), number);
+    if (error == std::errc::result_out_of_range) {
+      // Too small is 0; what is too large is the largest, which its reader refuses.
+      const bool small = one.find("e-") != std::string_view::npos ||
+                         one.find("E-") != std::string_view::npos ||
+                         one.substr(one.starts_with('-') ? 1 : 0).starts_with("0.") || one.starts_with('.');
+      number = small ? 0 : std::numeric_limits<double>::max();
+      error = {};
+    }
     if (error != std::errc{} || end != one.data() + one.size() || !std::isfinite(number)) return std::nullopt;
     numbers.push_back(number);
     if (comma == std::string_view::npos) return numbers;

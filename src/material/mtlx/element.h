@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,7 @@ struct Element {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::vector<Element> children;
   Place place;
+  std::vector<uint32_t> sorted = {};  ///< of many children, by their names; made by index()
 
   /// Null where there is no such attribute.
   const std::string* find(std::string_view attribute) const;
@@ -29,6 +31,9 @@ struct Element {
   void set(std::string_view attribute, std::string value);
   /// A child of that category and name; null where there is none.
   const Element* child(std::string_view category, std::string_view name) const;
+  /// Makes child() fast here and in all that is below. No child of them is renamed afterwards; more may come,
+  /// which makes it slow again.
+  void index();
 };
 
 /// Whether an element beside others may be a node: it is no port, no definition and nothing of geometry.
@@ -65,11 +70,15 @@ Result<Document> readXml(std::string_view text, const std::string& path, const L
 /// The same of a text that stands for itself: what it includes is left out.
 Result<Document> readXmlAlone(std::string_view text, const std::string& path, const Limits& limits);
 
-/// The `procedurals` of the extension KHR_texture_procedurals as elements: a `nodegraph` for each, in their
-/// order, and what is in `procedural_definitions` behind them. Places have JSON pointers. What is wrong with
-/// one goes to `wrong`, with its pointer, and its element is empty then. `textures`: how many the file has.
-std::vector<Element> readProcedurals(const json::Json& extension, const std::string& path,
-                                     const Limits& limits, size_t textures, Diagnostics& wrong);
+/// The extension KHR_texture_procedurals as elements.
+struct ProceduralElements {
+  std::vector<Element> list;         ///< of `procedurals` a `nodegraph` each, in their order
+  std::vector<Element> definitions;  ///< of `procedural_definitions` a `nodedef` or a `nodegraph` each
+};
+/// Places have JSON pointers. What is wrong with one goes to `wrong`, with its pointer, and its element is
+/// empty then. `textures`: how many the file has.
+ProceduralElements readProcedurals(const json::Json& extension, const std::string& path, const Limits& limits,
+                                   size_t textures, Diagnostics& wrong);
 
 /// A document as XML, two spaces of indent, a final newline. Categories and names of attributes are names;
 /// values may be any text.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "json/path.h"
 #include "mtlx/element.h"
@@ -21,7 +22,9 @@ public:
   ProceduralReader(const std::string& path, const Limits& limits, size_t textures, Diagnostics& wrong)
       : path_(path), limits_(limits), textures_(textures), wrong_(wrong) {}
 
-  Element graph(const Json& json, const Path& path, bool definition);
+  Element graph(const Json& json, const Path& path);
+  /// Those of `procedural_definitions`: definitions, and nodegraphs that name theirs.
+  std::vector<Element> definitions(const Json& list, const Path& path);
 
 private:
   bool fails(const Path& at, std::string code, std::string message, std::string help = {}) {
@@ -42,12 +45,17 @@ private:
   bool reference(const Json& json, const Path& path, std::string_view key, std::string_view attribute,
                  const std::vector<std::string>& names, Element& to);
   bool node(const Json& json, const Path& path, const std::string& name, Element& into);
+  bool body(const Json& json, const Path& path, Element& graph);
+  bool output(const Json& json, const Path& path, Element& port);
+  Element definition(const Json& json, const Path& path, const std::string& name);
 
   const std::string& path_;
   const Limits& limits_;
   const size_t textures_;
   Diagnostics& wrong_;
   std::vector<std::string> nodes_, inputs_;  ///< names by number
+  /// Of nodes, by their numbers, the names of the outputs that they list.
+  std::vector<std::vector<std::string>> outputs_;
 };
 
 /// A value as MaterialX writes it: "1,0.5", "true", a text.
@@ -130,7 +138,12 @@ bool ProceduralReader::port(const Json& json, std::string_view name, const Path&
     const Json* text = json::member(json, key);
     if (text != nullptr && text->is_string() && text->text() != "none") port.set(key, text->text());
   }
-  if (const Json* value = json::member(json, "value")) port.set("value", textOf(*value));
+  if (const Json* value = json::member(json, "value")) {
+    if (value->is_object() || value->is_null())
+      return fails(Path(path, "value"), "wrong-type", fmt::format("value is {}", json::describe(*value)),
+                   "it is a number, a boolean, a text, or an array of numbers");
+    port.set("value", textOf(*value));
+  }
   if (const Json* texture = json::member(json, "texture")) {
     if (!texture->is_number_unsigned() && !texture->is_number_integer())
       return fails(Path(path, "texture"), "wrong-type",
@@ -143,10 +156,30 @@ bool ProceduralReader::port(const Json& json, std::string_view name, const Path&
   }
   if (!reference(json, path, "node", "nodename", nodes_, port)) return false;
   if (!reference(json, path, "input", "interfacename", inputs_, port)) return false;
-  const Json* output = json::member(json, "output");
-  if (output != nullptr && output->is_string()) port.set("output", output->text());
-  // A number here is that of an output of the node it is taken from, which has it by name or alone.
-  if (output != nullptr && output->is_number()) port.set("outputnumber", output->dump());
+  return output(json, path, port);
+}
+
+/// Which output of a node a port takes: by its name, or by its place among the outputs that the node lists.
+bool ProceduralReader::output(const Json& json, const Path& path, Element& port) {
+  const Json* named = json::member(json, "output");
+  if (named == nullptr) return true;
+  if (named->is_string()) return port.set("output", named->text()), true;
+  if (!named->is_number())
+    return fails(Path(path, "output"), "wrong-type", fmt::format("output is {}", json::describe(*named)),
+                 "it is the name of an output, or its number");
+  const auto node = std::find(nodes_.begin(), nodes_.end(), port.get("nodename"));
+  const auto place = static_cast<size_t>(node - nodes_.begin());
+  if (node == nodes_.end() || outputs_[place].empty()) {
+    // Of one that lists none its definition has the order.
+    port.set("outputnumber", named->dump());
+    return true;
+  }
+  const std::vector<std::string>& all = outputs_[place];
+  if (!named->is_number_unsigned() || named->get<uint64_t>() >= all.size())
+    return fails(Path(path, "output"), "wrong-reference",
+                 fmt::format("the node {} has no output {}", quote(*node), printable(named->dump())),
+                 fmt::format("it lists {}", all.size()));
+  port.set("output", all[named->get<uint64_t>()]);
   return true;
 }
 
@@ -166,8 +199,42 @@ bool ProceduralReader::node(const Json& json, const Path& path, const std::strin
   });
 }
 
-Element ProceduralReader::graph(const Json& json, const Path& path, bool definition) {
-  const size_t before = wrong_.size();
+/// The nodes and outputs of a graph, whose inputs are known.
+bool ProceduralReader::body(const Json& json, const Path& path, Element& graph) {
+  const Json* nodes = json::member(json, "nodes");
+  if (nodes != nullptr && !nodes->is_array())
+    return fails(Path(path, "nodes"), "wrong-type", fmt::format("nodes is {}", json::describe(*nodes)),
+                 "it is an array");
+  const size_t count = nodes == nullptr ? 0 : nodes->size();
+  if (count > limits_.nodes)
+    return fails(Path(path, "nodes"), "too-many", fmt::format("the procedural has {} nodes", count),
+                 raising("nodes"));
+  std::set<std::string, std::less<>> names;
+  nodes_.clear();
+  outputs_.assign(count, {});
+  for (size_t i = 0; i < count; ++i) {
+    const Json* name = json::member((*nodes)[i], "name");
+    std::string own = name != nullptr && name->is_string() ? name->text() : std::string();
+    if (own.empty() || !names.insert(own).second) own += fmt::format("_{}", i);
+    nodes_.push_back(std::move(own));
+    const Json* outputs = json::member((*nodes)[i], "outputs");
+    if (outputs == nullptr || (!outputs->is_object() && !outputs->is_array())) continue;
+    (void)ports((*nodes)[i], "outputs", path, [&](const Json&, const std::string& of, const Path&) {
+      outputs_[i].push_back(of);
+      return true;
+    });
+  }
+  bool good = true;
+  for (size_t i = 0; good && i < count; ++i) {
+    const Path all(path, "nodes");
+    good = node((*nodes)[i], Path(all, i), nodes_[i], graph);
+  }
+  return good && ports(json, "outputs", path, [&](const Json& one, const std::string& name, const Path& at) {
+           return port(one, name, at, "output", graph);
+         });
+}
+
+Element ProceduralReader::graph(const Json& json, const Path& path) {
   Element graph;
   graph.category = "nodegraph";
   graph.place = placeOf(path);
@@ -177,28 +244,9 @@ Element ProceduralReader::graph(const Json& json, const Path& path, bool definit
     fails(path, "wrong-type", fmt::format("the procedural is {}", json::describe(json)), "it is an object");
     return {};
   }
-  for (const std::string_view key : {"name", "type", "nodedef"}) {
+  for (const std::string_view key : {"name", "type"}) {
     const Json* text = json::member(json, key);
     if (text != nullptr && text->is_string()) graph.set(key, text->text());
-  }
-  const Json* nodes = json::member(json, "nodes");
-  if (nodes != nullptr && !nodes->is_array()) {
-    fails(Path(path, "nodes"), "wrong-type", fmt::format("nodes is {}", json::describe(*nodes)),
-          "it is an array");
-    return {};
-  }
-  const size_t count = nodes == nullptr ? 0 : nodes->size();
-  if (count > limits_.nodes) {
-    fails(Path(path, "nodes"), "too-many", fmt::format("the procedural has {} nodes", count),
-          raising("nodes"));
-    return {};
-  }
-  std::set<std::string, std::less<>> names;
-  for (size_t i = 0; i < count; ++i) {
-    const Json* name = json::member((*nodes)[i], "name");
-    std::string own = name != nullptr && name->is_string() ? name->text() : std::string();
-    if (own.empty() || !names.insert(own).second) own += fmt::format("_{}", i);
-    nodes_.push_back(std::move(own));
   }
   bool good = ports(json, "inputs", path, [&](const Json&, const std::string& name, const Path&) {
     inputs_.push_back(name);
@@ -207,42 +255,126 @@ Element ProceduralReader::graph(const Json& json, const Path& path, bool definit
   good = good && ports(json, "inputs", path, [&](const Json& one, const std::string& name, const Path& at) {
            return port(one, name, at, "input", graph);
          });
-  for (size_t i = 0; good && i < count; ++i) {
-    const Path all(path, "nodes");
-    good = node((*nodes)[i], Path(all, i), nodes_[i], graph);
+  good = good && body(json, path, graph);
+  if (good && std::none_of(graph.children.begin(), graph.children.end(),
+                           [](const Element& e) { return e.category == "output"; }))
+    good = fails(path, "missing-property", "the procedural has no outputs");
+  return good ? graph : Element{};
+}
+
+Element ProceduralReader::definition(const Json& json, const Path& path, const std::string& name) {
+  Element made;
+  made.category = "nodedef";
+  made.place = placeOf(path);
+  made.set("name", name);
+  const Json* node = json::member(json, "node");
+  if (node == nullptr || !node->is_string()) {
+    fails(path, "missing-property", "the definition has no \"node\"", "it is the nodetype of its instances");
+    return {};
   }
-  good = good && ports(json, "outputs", path, [&](const Json& one, const std::string& name, const Path& at) {
-           return port(one, name, at, "output", graph);
-         });
-  if (good && !definition && std::none_of(graph.children.begin(), graph.children.end(), [](const Element& e) {
-        return e.category == "output";
-      }))
-    fails(path, "missing-property", "the procedural has no outputs");
-  return wrong_.size() == before ? graph : Element{};
+  made.set("node", node->text());
+  const Json* version = json::member(json, "version");
+  if (version != nullptr && version->is_string()) made.set("version", version->text());
+  const Json* by_default = json::member(json, "defaultVersion");
+  if (by_default != nullptr && *by_default == Json(true)) made.set("isdefaultversion", "true");
+  nodes_.clear();
+  inputs_.clear();
+  bool good = true;
+  for (const std::string_view category : {"input", "output"}) {
+    good = good && ports(json, category == "input" ? "inputs" : "outputs", path,
+                         [&](const Json& one, const std::string& port_name, const Path& at) {
+                           if (!port(one, port_name, at, category, made)) return false;
+                           const Json* given = json::member(one, "defaultgeomprop");
+                           if (given != nullptr && given->is_string())
+                             made.children.back().set("defaultgeomprop", given->text());
+                           return true;
+                         });
+  }
+  return good ? made : Element{};
+}
+
+std::vector<Element> ProceduralReader::definitions(const Json& list, const Path& path) {
+  const auto isGraph = [&](size_t i) {
+    const Json* type = json::member(list[i], "nodetype");
+    return type != nullptr && *type == Json("nodegraph");
+  };
+  std::vector<Element> made(list.size());
+  std::set<std::string, std::less<>> names;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const Path at(path, i);
+    const Json* name = json::member(list[i], "name");
+    std::string own = name != nullptr && name->is_string() ? name->text() : std::string();
+    if (own.empty() || !names.insert(own).second) own += fmt::format("_{}", i);
+    const Json* type = json::member(list[i], "nodetype");
+    if (!isGraph(i) && (type == nullptr || *type != Json("nodedef"))) {
+      fails(at, "wrong-type", "this is no definition", "its nodetype is \"nodedef\" or \"nodegraph\"");
+      continue;
+    }
+    if (!isGraph(i)) made[i] = definition(list[i], at, own);
+    if (isGraph(i)) made[i].set("name", own);
+  }
+  for (size_t i = 0; i < list.size(); ++i) {
+    if (!isGraph(i)) continue;
+    const Path at(path, i);
+    const Json* of = json::member(list[i], "nodedef");
+    const auto named = std::find_if(made.begin(), made.end(), [&](const Element& e) {
+      return of != nullptr && of->is_string() && e.category == "nodedef" && e.name() == of->text();
+    });
+    size_t place = static_cast<size_t>(named - made.begin());
+    if (of != nullptr && of->is_number_unsigned())
+      place = std::min<uint64_t>(of->get<uint64_t>(), made.size());
+    Element graph = std::exchange(made[i], {});
+    if (place == made.size() || isGraph(place)) {
+      const std::string said = of == nullptr ? "no \"nodedef\"" : "the nodedef " + printable(of->dump());
+      fails(at, "wrong-reference", fmt::format("the nodegraph has {}", said),
+            "it is the number of a definition of this array");
+      continue;
+    }
+    if (made[place].category.empty()) continue;  // it is wrong itself
+    graph.category = "nodegraph";
+    graph.place = placeOf(at);
+    graph.set("nodedef", std::string(made[place].name()));
+    inputs_.clear();
+    for (const Element& port : made[place].children)
+      if (port.category == "input") inputs_.emplace_back(port.name());
+    if (body(list[i], at, graph)) made[i] = std::move(graph);
+  }
+  std::erase_if(made, [](const Element& one) { return one.category.empty(); });
+  return made;
 }
 
 }  // namespace
 
-std::vector<Element> readProcedurals(const Json& extension, const std::string& path, const Limits& limits,
-                                     size_t textures, Diagnostics& wrong) {
-  std::vector<Element> graphs;
+ProceduralElements readProcedurals(const Json& extension, const std::string& path, const Limits& limits,
+                                   size_t textures, Diagnostics& wrong) {
+  ProceduralElements read;
   const Path root;
   const Path extensions(root, "extensions");
   const Path own(extensions, "KHR_texture_procedurals");
-  const Json* list = json::member(extension, "procedurals");
-  if (list == nullptr || !list->is_array()) {
+  const auto listed = [&](std::string_view key) {
+    const Json* list = json::member(extension, key);
+    return list != nullptr && list->is_array() ? list : nullptr;
+  };
+  const auto isNoArray = [&](std::string_view key) {
     wrong.push_back({"missing-property",
                      Severity::Error,
                      {path, 0, 0, own.text()},
-                     "KHR_texture_procedurals has no array \"procedurals\"",
+                     fmt::format("KHR_texture_procedurals has no array {}", quote(key)),
                      {},
                      {}});
-    return graphs;
-  }
+  };
+  constexpr std::string_view kDefinitions = "procedural_definitions";
+  const Json* definitions = listed(kDefinitions);
+  if (definitions == nullptr && json::member(extension, kDefinitions) != nullptr) isNoArray(kDefinitions);
+  if (definitions != nullptr)
+    read.definitions =
+        ProceduralReader(path, limits, textures, wrong).definitions(*definitions, Path(own, kDefinitions));
+  const Json* list = listed("procedurals");
+  if (list == nullptr) return isNoArray("procedurals"), read;
   const Path all(own, "procedurals");
   for (size_t i = 0; i < list->size(); ++i)
-    graphs.push_back(ProceduralReader(path, limits, textures, wrong).graph((*list)[i], Path(all, i), false));
-  return graphs;
+    read.list.push_back(ProceduralReader(path, limits, textures, wrong).graph((*list)[i], Path(all, i)));
+  return read;
 }
 
 }  // namespace lacquer::materialx

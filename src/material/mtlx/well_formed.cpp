@@ -50,6 +50,17 @@ bool isReference(std::string_view text) {
   return error == std::errc{} && end == digits.data() + digits.size() && isXmlCharacter(number);
 }
 
+/// Whether a text begins with the name of a token in angle brackets: MaterialX's own documents have `<UDIM>`
+/// in file names as it is.
+bool isToken(std::string_view text) {
+  const size_t end = text.find('>');
+  if (end == std::string_view::npos || end < 2) return false;
+  const std::string_view name = text.substr(1, end - 1);
+  return std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
 /// The error of a comment that begins there, or of a declaration that is not the first of the text.
 std::optional<Malformed> malformedBeside(std::string_view text, size_t at) {
   constexpr std::string_view kComment = "<!--", kDeclaration = "<?xml";
@@ -89,7 +100,7 @@ std::optional<Malformed> malformed(std::string_view text) {
     if (i >= passed) {
       if (!tag && c == ']' && text.substr(i).starts_with("]]>"))
         return Malformed{i, "a text has \"]]>\"", "it is written \"]]&gt;\" there"};
-      if (quote_open != 0 && c == '<')
+      if (quote_open != 0 && c == '<' && !isToken(text.substr(i)))
         return Malformed{i, "an attribute has a \"<\"", "it is written \"&lt;\" there"};
       if (c == '&' && !isReference(text.substr(i, 16)))
         return Malformed{i,

@@ -28,6 +28,8 @@ namespace {
 constexpr size_t kDeepestElement = 32;
 /// Elements of a document with all that it includes.
 constexpr uint64_t kMostElements = uint64_t{1} << 20;
+/// More than anyone writes: each is compared with those before it.
+constexpr size_t kMostAttributes = 1024;
 /// Files that a file includes, theirs included.
 constexpr size_t kMostFiles = 256;
 
@@ -260,6 +262,10 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
 /// Takes over an element's attributes. The parser passes one that is there twice, which XML does not.
 void XmlReader::attributes(const pugi::xml_node& from, Element& to) {
   for (const pugi::xml_attribute& a : from.attributes()) {
+    if (to.attributes.size() == kMostAttributes)
+      return void(error(
+          "xml-too-many", from.offset_debug(),
+          fmt::format("the element {} has more than {} attributes", quote(from.name()), kMostAttributes)));
     if (to.find(a.name()) != nullptr) {
       error("xml-syntax", from.offset_debug(),
             fmt::format("the attribute {} of {} is there twice", quote(a.name()), quote(from.name())));
@@ -292,15 +298,16 @@ int XmlReader::version(const Element& root) {
     }
     return minor;
   }
-  Diagnostic one{
-      "unsupported-version",
-      Severity::Error,
-      root.place,
-      text.empty() ? "the document has no version" : fmt::format("the version is {}", quote(text)),
-      fmt::format(
-          "Lacquer reads MaterialX 1.{} and later; MaterialX's own library brings older documents to it",
-          kLeastMinor),
-      {}};
+  const bool later = major > 1;
+  Diagnostic one{"unsupported-version",
+                 Severity::Error,
+                 root.place,
+                 text.empty() ? "the document has no version" : fmt::format("the version is {}", quote(text)),
+                 later ? fmt::format("Lacquer reads MaterialX from 1.{} to 1.{}", kLeastMinor, kPresentMinor)
+                       : fmt::format("Lacquer reads MaterialX 1.{} and later; MaterialX's own library brings "
+                                     "older documents to it",
+                                     kLeastMinor),
+                 {}};
   wrong_.push_back(std::move(one));
   return minor;
 }
@@ -428,7 +435,8 @@ void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& aro
     error("include-cycle", offset, fmt::format("{} includes itself", quote(href)));
     return;
   }
-  if (files_.size() >= kMostFiles) {
+  const bool again = std::find(files_.begin(), files_.end(), *path) != files_.end();
+  if (!again && files_.size() >= kMostFiles) {
     error("include-too-many", offset, fmt::format("more than {} files are included", kMostFiles));
     return;
   }
@@ -439,7 +447,7 @@ void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& aro
           fmt::format("{} cannot be read: {}", quote(href), text.error()[0].message));
     return;
   }
-  files_.push_back(*path);
+  if (!again) files_.push_back(*path);
   // It may stand in any folder: what is shown of it is its path, so that its errors are found.
   file(*text, *path, into, around);
 }

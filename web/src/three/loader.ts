@@ -2,7 +2,7 @@
 import { MeshBasicMaterial, TextureLoader, type Group, type Material, type Mesh, type Object3D, type Texture } from 'three';
 import type { Lacquer, Scene as LacquerScene } from '../index.js';
 import type { GraphTexture, Message, Options } from '../types.js';
-import { attributesOf, inSpace, LacquerMaterial, withStates } from './material.js';
+import { asSlot, attributesOf, LacquerMaterial, withStates } from './material.js';
 
 /** What the plugin uses of GLTFLoader's parser. */
 interface Parser {
@@ -129,7 +129,8 @@ export class LacquerPlugin {
     };
   }
 
-  private async picture({ texture, file, srgb }: GraphTexture): Promise<Texture | null> {
+  private async picture(slot: GraphTexture): Promise<Texture | null> {
+    const { texture, file } = slot;
     const { manager, path } = this.parser.options;
     const load = async (): Promise<Texture | null> => {
       if (texture >= 0) return this.parser.getDependency('texture', texture);
@@ -138,6 +139,6 @@ export class LacquerPlugin {
     const found = await load().catch(() => null); // the loader has told
     if (!found) return null;
     if (file) found.flipY = false;
-    return inSpace(found, srgb);
+    return asSlot(found, slot);
   }
 }

@@ -1,11 +1,11 @@
 // A material of three.js whose shader is Lacquer's.
 import {
-  DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, Material, Matrix4, Quaternion, RGBAFormat, ShaderMaterial, SRGBColorSpace,
-  UniformsLib, UniformsUtils, Vector2, type BufferAttribute, type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh,
-  type Texture, type WebGLRenderer,
+  ClampToEdgeWrapping, DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, LinearFilter, Material, Matrix4, MirroredRepeatWrapping,
+  NearestFilter, Quaternion, RepeatWrapping, RGBAFormat, ShaderMaterial, SRGBColorSpace, UniformsLib, UniformsUtils, Vector2, type BufferAttribute,
+  type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
 } from 'three';
 import type { Graph, Lacquer, Shader } from '../index.js';
-import type { Attribute, Field, Interface, Message, Options, Parameter, Values } from '../types.js';
+import type { Attribute, Field, GraphTexture, Interface, Message, Options, Parameter, Values } from '../types.js';
 import { environmentIn, tablesOf, type Environment } from './environment.js';
 import { lightsOf } from './lights.js';
 import { sceneBehind } from './behind.js';
@@ -316,19 +316,26 @@ export function materialFrom(
   const scene = lacquer.scene(JSON.stringify(file), 'material.gltf', options, messages);
   try {
     const graph = scene.graph(0, options, attributesOf(mesh), messages);
-    const slots = Object.fromEntries(graph.textures().map(({ name, texture, srgb }) => [name, inSpace(textures[texture], srgb)]));
+    const slots = Object.fromEntries(graph.textures().map((slot) => [slot.name, asSlot(textures[slot.texture], slot)]));
     return withStates(new LacquerMaterial(lacquer, graph, { textures: slots, options, messages }), json);
   } finally {
     scene.free();
   }
 }
 
-/** The texture with the colour space of its slot: the same picture may be read as numbers elsewhere. */
-export function inSpace(texture: Texture | null | undefined, srgb: boolean): Texture | null {
-  if (!texture || !srgb || texture.colorSpace === SRGBColorSpace) return texture ?? null;
-  const colors = texture.clone();
-  colors.colorSpace = SRGBColorSpace;
-  return colors;
+/** The texture as a slot has it: with its colour space, as the same picture may be read as numbers elsewhere, and with its
+ * sampler where the graph has one. */
+export function asSlot(texture: Texture | null | undefined, { srgb, sampler }: GraphTexture): Texture | null {
+  if (!texture || (!sampler && (!srgb || texture.colorSpace === SRGBColorSpace))) return texture ?? null;
+  const own = texture.clone();
+  if (srgb) own.colorSpace = SRGBColorSpace;
+  if (sampler) {
+    const kWraps: Record<string, Wrapping> = { repeat: RepeatWrapping, clamp: ClampToEdgeWrapping, mirror: MirroredRepeatWrapping };
+    own.wrapS = kWraps[sampler.wrap_s];
+    own.wrapT = kWraps[sampler.wrap_t];
+    own.magFilter = sampler.mag_filter === 'nearest' ? NearestFilter : LinearFilter;
+  }
+  return own;
 }
 
 /** What of a glTF material is no matter of its shader. */
