@@ -76,6 +76,7 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
   addBareNames(root_, nodedefs_, nodegraphs_);
   for (Flaw& flaw : flawsOf(root_, nodedefs_, nodegraphs_)) addBounded(wrong_, std::move(flaw.said));
   if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
+  takeDisabled(root_);
   makeConversionsUnlit(root_);
   addTangentSpace(root_);
   root_.index();

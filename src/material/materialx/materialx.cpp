@@ -405,6 +405,7 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
   if (!document) return tl::make_unexpected(document.error());
   Diagnostics said = std::move(document->said);
   const VariantMaterials variants = addVariants(document->root, said);
+  takeDisabled(document->root);
   makeConversionsUnlit(document->root);
   addTangentSpace(document->root);
   document->root.index();

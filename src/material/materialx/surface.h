@@ -115,6 +115,10 @@ inline constexpr std::string_view kMadeOutput = "made_output";
 /// Gives a nodegraph an output in tangent space beside each that is a normal map's, for Surface::normal().
 void addTangentSpace(Element& document);
 
+/// A node whose input `disable` is true becomes one that gives its default input or value (MaterialX 1.39,
+/// "Standard Node Inputs").
+void takeDisabled(Element& document);
+
 /// Each `convert` to a surfaceshader becomes the `surface_unlit` that it stands for.
 void makeConversionsUnlit(Element& document);
 
