@@ -91,21 +91,6 @@ Element* elementAt(Element& root, std::string_view pointer) {
   return found;
 }
 
-/// The unit that a parameter has which was read of an input: that of the port, if it has one.
-std::string_view unitAt(const Element& root, const Element& node, std::string_view input) {
-  const auto portIn = [&](const Element& definitions) -> const Element* {
-    for (const Element& child : definitions.children) {
-      if (child.category != "nodedef" || child.get("node") != node.category) continue;
-      const Element* port = child.child("input", input);
-      if (port != nullptr && !port->get("unit").empty()) return port;
-    }
-    return nullptr;
-  };
-  const Element* port = portIn(root);
-  if (port == nullptr) port = portIn(materialx::surfaceModels());
-  return port == nullptr ? std::string_view() : port->get("unit");
-}
-
 void putNumber(Element& input, const graph::Parameter& parameter, const materialx::Units& units,
                std::string_view unit) {
   const std::vector<double> numbers = parameter.numbers();
@@ -139,8 +124,9 @@ void putNumbers(Element& root, const graph::Graph& edited) {
     Element* input = elementAt(root, parameter.pointer);
     if (input == nullptr || input->find("value") == nullptr) continue;
     const Element* node = elementAt(root, parameter.pointer.substr(0, parameter.pointer.rfind('/')));
-    putNumber(*input, parameter, units,
-              node == nullptr ? std::string_view() : unitAt(root, *node, input->name()));
+    putNumber(
+        *input, parameter, units,
+        node == nullptr ? std::string_view() : materialx::portUnit(root, node->category, input->name()));
   }
 }
 

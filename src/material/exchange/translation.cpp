@@ -10,6 +10,7 @@
 
 #include "materialx/patterns.h"
 #include "mtlx/looks.h"
+#include "mtlx/models.h"
 #include "mtlx/values.h"
 #include "support/text.h"
 
@@ -109,7 +110,8 @@ public:
     }
     const std::optional<ir::Type> type = materialx::typeOf(given.type);
     if (!term.known() || input->find("value") == nullptr || !type) return term;
-    const Result<ir::Components> read = materialx::valueOf(*input, *type, units_);
+    const Result<ir::Components> read =
+        materialx::valueOf(*input, *type, units_, materialx::portUnit(Element(), kFrom, name));
     if (!read) {
       said_.insert(said_.end(), read.error().begin(), read.error().end());
       return term;

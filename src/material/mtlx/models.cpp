@@ -21,4 +21,15 @@ const Element& surfaceModels() {
   return kModels;
 }
 
+std::string_view portUnit(const Element& document, std::string_view category, std::string_view input) {
+  for (const Element* definitions : {&document, &surfaceModels()}) {
+    for (const Element& child : definitions->children) {
+      if (child.category != "nodedef" || child.get("node") != category) continue;
+      const Element* port = child.child("input", input);
+      if (port != nullptr && !port->get("unit").empty()) return port->get("unit");
+    }
+  }
+  return {};
+}
+
 }  // namespace lacquer::materialx

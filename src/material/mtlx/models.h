@@ -14,4 +14,8 @@ inline constexpr std::string_view kRemoves = "removes";
 /// A document whose definitions are the surfaces that there is a model for.
 const Element& surfaceModels();
 
+/// The unit that numbers of a node's input have, which its definition says: one of the document, or else of
+/// surfaceModels(). Empty where none says one.
+std::string_view portUnit(const Element& document, std::string_view category, std::string_view input);
+
 }  // namespace lacquer::materialx

@@ -230,7 +230,10 @@ Result<ir::Components> valueOf(const Element& input, ir::Type type, const Units&
       return fail("unknown-unit", input.place, fmt::format("{} is in {}", quote(input.name()), quote(*unit)),
                   fmt::format("it is a number of {}s", port_unit));
     const double scale = wanted == nullptr ? given->scale : given->scale / wanted->scale;
-    for (size_t i = 0; i < count && given != wanted; ++i) components[i] *= scale;
+    // A micron is 1000 nanometres: the quotient of the scales is less by a last bit, the reverse is exact.
+    const bool larger = wanted != nullptr && scale > 1;
+    for (size_t i = 0; i < count && given != wanted; ++i)
+      components[i] = larger ? components[i] / (wanted->scale / given->scale) : components[i] * scale;
   }
   const std::string_view written = input.get("type");
   const std::string_view space = input.get("colorspace");
