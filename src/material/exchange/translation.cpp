@@ -208,6 +208,7 @@ public:
     const auto found = defaults_.find(name);
     return found == defaults_.end() ? nullptr : &found->second;
   }
+  const std::map<std::string_view, Element>& defaults() const { return defaults_; }
   /// A normal or a tangent, where it is connected.
   void pass(std::string_view name, std::string_view as) {
     const Term term = get(name);
@@ -505,20 +506,23 @@ public:
     for (const Element& set : sets_)
       for (const Element& variant : set.children)
         if (variant.category == "variant") changed_.try_emplace(&variant);
+    if (any()) findUses(root);
   }
   bool any() const { return !sets_.empty(); }
   const materialx::Units& units() const { return units_; }
 
-  /// `to`, made by `formulas` with the nodes beside it; `names` are those before that.
-  void surface(const Element& from, Element& to, const Formulas& formulas, const std::vector<Element>& beside,
-               const materialx::NameSet& names);
-  void finish(Element& root) const;
+  /// `to`, made by `formulas` with the nodes beside it; `names` are those before that. `element`: the
+  /// surface, or the nodegraph that it stands in.
+  void surface(const Element& from, std::string_view element, Element& to, const Formulas& formulas,
+               const std::vector<Element>& beside, const materialx::NameSet& names);
+  void finish(Element& root);
 
 private:
   struct Changed {
     std::optional<std::string> surface;  ///< the first that it changes
     std::vector<Element> inputs;
   };
+  using Names = std::set<std::string, std::less<>>;
 
   static bool isInput(const Element& value) {
     const auto is = [&](const Given& one) { return one.name == value.name(); };
@@ -528,14 +532,23 @@ private:
   static bool namesSurfaces(const Element& set) {
     return !set.get("node").empty() || !set.get("nodedef").empty();
   }
-  static bool isFor(const Element& set, const Element& variant, const Element& surface);
+  static std::string nameOf(const Element& set, const Element& variant) {
+    return fmt::format("{}/{}", set.name(), variant.name());
+  }
+  void findUses(const Element& root);
+  bool isFor(const Element& set, const Element& variant, const Element& surface,
+             std::string_view element) const;
+  std::vector<Element> changes(const Element& set, const Element& variant, const Element& from,
+                               const Element& to, const Formulas& formulas,
+                               const std::vector<Element>& beside, const materialx::NameSet& names,
+                               std::vector<Element>& more);
+  void tellOthers(const Element& set, const Element& variant);
+  void warn(const Element& at, std::string message, std::string help) {
+    addBounded(said_, {"not-said", Severity::Warning, at.place, std::move(message), std::move(help), {}});
+  }
   void lost(const Element& at, std::string_view name) {
-    addBounded(said_, {"not-said",
-                       Severity::Warning,
-                       at.place,
-                       fmt::format("the variant {} has no value for {} of {}", quote(at.name()), name, as_),
-                       "what it changes there is lost",
-                       {}});
+    warn(at, fmt::format("the variant {} has no value for {} of {}", quote(at.name()), name, as_),
+         "what it changes there is lost");
   }
 
   std::string_view as_;
@@ -543,15 +556,42 @@ private:
   materialx::Units units_;
   std::vector<Element> sets_;
   std::map<const Element*, Changed> changed_;  ///< looked up, never walked
+  /// By a variant, "wetness/wet", and by its set: surfaces of materials with its values, or the nodegraphs
+  /// that these stand in.
+  std::map<std::string, Names, std::less<>> uses_;
+  Names translated_;
 };
 
-bool VariantTranslation::isFor(const Element& set, const Element& variant, const Element& surface) {
-  const auto& values = variant.children;
-  if (std::none_of(values.begin(), values.end(), isInput)) return false;
-  if (!namesSurfaces(set))
-    return std::any_of(values.begin(), values.end(), [&](const Element& value) {
-      return isInput(value) && surface.child("input", value.name()) != nullptr;
-    });
+/// Finds which surfaces each variant is for, as it is read.
+void VariantTranslation::findUses(const Element& root) {
+  Element read = root;
+  Diagnostics elsewhere;
+  const materialx::VariantMaterials made = materialx::addVariants(read, elsewhere);
+  std::map<std::string_view, const Element*> materials;
+  for (const Element& child : read.children)
+    if (child.category == "surfacematerial") materials[child.name()] = &child;  // these are behind others
+  for (const materialx::VariantOf& one : made.made) {
+    const Element* input = materials.at(one.material)->child("input", "surfaceshader");
+    if (input == nullptr) continue;
+    // Called as it was, and behind that as what the material's name has got.
+    const size_t behind = one.material.size() - one.of.size();
+    std::string name(input->get(input->find("nodegraph") != nullptr ? "nodegraph" : "nodename"));
+    name.resize(name.size() - std::min(name.size(), behind));
+    for (const std::string& variant : one.variants) {
+      uses_[variant].insert(name);
+      uses_[variant.substr(0, variant.find('/'))].insert(name);
+    }
+  }
+}
+
+bool VariantTranslation::isFor(const Element& set, const Element& variant, const Element& surface,
+                               std::string_view element) const {
+  if (std::none_of(variant.children.begin(), variant.children.end(), isInput)) return false;
+  // What no material has changes the same as its set's others.
+  for (const std::string& name : {nameOf(set, variant), std::string(set.name())}) {
+    if (const auto uses = uses_.find(name); uses != uses_.end()) return uses->second.contains(element);
+  }
+  if (!namesSurfaces(set)) return true;
   for (const std::string& node : materialx::geometryNames(set.get("node")))
     if (node == surface.name() || node == kFrom) return true;
   for (const std::string& nodedef : materialx::geometryNames(set.get("nodedef")))
@@ -560,74 +600,98 @@ bool VariantTranslation::isFor(const Element& set, const Element& variant, const
   return false;
 }
 
-void VariantTranslation::surface(const Element& from, Element& to, const Formulas& formulas,
-                                 const std::vector<Element>& beside, const materialx::NameSet& names) {
+/// What a variant of one surface is. `more`: inputs for that surface, which is as before with them.
+std::vector<Element> VariantTranslation::changes(const Element& set, const Element& variant,
+                                                 const Element& from, const Element& to,
+                                                 const Formulas& formulas, const std::vector<Element>& beside,
+                                                 const materialx::NameSet& names,
+                                                 std::vector<Element>& more) {
+  Element varied = from;
+  for (const Element& value : variant.children) {
+    if (!isInput(value)) continue;
+    std::erase_if(varied.children, [&](const Element& one) { return one.name() == value.name(); });
+    varied.children.push_back(value);
+  }
+  materialx::NameSet own_names = names;
+  std::vector<Element> own_beside, inputs;
+  Diagnostics own_said;
+  Formulas own(varied, units_, own_names, own_beside, own_said);
+  translateBy(own, as_);
+  const std::vector<Element> made = own.finish(as_);
+  for (Diagnostic& one : own_said) {
+    const bool of_variant = std::any_of(variant.children.begin(), variant.children.end(),
+                                        [&](const Element& value) { return value.place == one.place; });
+    if (of_variant) addBounded(said_, std::move(one));
+  }
+  for (const Element& input : made) {
+    const Element* before = named(to.children, input.name());
+    const bool linked = input.find("value") == nullptr;
+    if (before != nullptr && isSame(*before, beside, input, own_beside)) continue;
+    if (linked)
+      lost(variant, input.name());
+    else
+      inputs.push_back(input);
+  }
+  for (const Element& before : to.children) {
+    const Element* by_default = formulas.byDefault(before.name());
+    if (named(made, before.name()) != nullptr || (by_default != nullptr && isAlike(*by_default, before)))
+      continue;
+    if (by_default != nullptr)
+      inputs.push_back(*by_default);
+    else
+      lost(variant, before.name());
+  }
+  // A variant is for what it changes something of: without an input it would be for no surface.
+  if (namesSurfaces(set)) return inputs;
+  const auto idle = std::find_if(own.defaults().begin(), own.defaults().end(),
+                                 [&](const auto& one) { return named(made, one.first) == nullptr; });
+  if (inputs.empty() && idle != own.defaults().end()) inputs.push_back(idle->second);
+  for (const Element& input : inputs) {
+    const Element* by_default = own.byDefault(input.name());
+    const bool known = named(to.children, input.name()) != nullptr || named(more, input.name()) != nullptr;
+    if (!known && by_default != nullptr) more.push_back(*by_default);
+  }
+  return inputs;
+}
+
+void VariantTranslation::surface(const Element& from, std::string_view element, Element& to,
+                                 const Formulas& formulas, const std::vector<Element>& beside,
+                                 const materialx::NameSet& names) {
   std::vector<Element> more;
+  translated_.emplace(element);
   for (const Element& set : sets_) {
     for (const Element& variant : set.children) {
-      if (variant.category != "variant" || !isFor(set, variant, from)) continue;
-      Element varied = from;
-      for (const Element& value : variant.children) {
-        if (!isInput(value)) continue;
-        std::erase_if(varied.children, [&](const Element& one) { return one.name() == value.name(); });
-        varied.children.push_back(value);
-      }
-      materialx::NameSet own_names = names;
-      std::vector<Element> own_beside, inputs;
-      Diagnostics own_said;
-      Formulas own(varied, units_, own_names, own_beside, own_said);
-      translateBy(own, as_);
-      const std::vector<Element> made = own.finish(as_);
-      for (Diagnostic& one : own_said) {
-        const bool of_variant = std::any_of(variant.children.begin(), variant.children.end(),
-                                            [&](const Element& value) { return value.place == one.place; });
-        if (of_variant) addBounded(said_, std::move(one));
-      }
-      for (const Element& input : made) {
-        const Element* before = named(to.children, input.name());
-        const bool linked = input.find("value") == nullptr;
-        if (before != nullptr && isSame(*before, beside, input, own_beside)) continue;
-        if (linked)
-          lost(variant, input.name());
-        else
-          inputs.push_back(input);
-      }
-      for (const Element& before : to.children) {
-        const bool kept = std::any_of(made.begin(), made.end(),
-                                      [&](const Element& one) { return one.name() == before.name(); });
-        const Element* by_default = formulas.byDefault(before.name());
-        if (kept || (by_default != nullptr && isAlike(*by_default, before))) continue;
-        if (by_default != nullptr)
-          inputs.push_back(*by_default);
-        else
-          lost(variant, before.name());
-      }
-      // Without it the variant would not be for this surface.
-      for (const Element& input : inputs) {
-        const Element* by_default = own.byDefault(input.name());
-        const bool known =
-            named(to.children, input.name()) != nullptr || named(more, input.name()) != nullptr;
-        if (!namesSurfaces(set) && !known && by_default != nullptr) more.push_back(*by_default);
-      }
+      if (variant.category != "variant" || !isFor(set, variant, from, element)) continue;
+      std::vector<Element> inputs = changes(set, variant, from, to, formulas, beside, names, more);
       Changed& changed = changed_.at(&variant);
       if (!changed.surface) {
         changed = {std::string(from.name()), std::move(inputs)};
       } else if (!std::equal(inputs.begin(), inputs.end(), changed.inputs.begin(), changed.inputs.end(),
                              isAlike)) {
-        addBounded(said_, {"not-said",
-                           Severity::Warning,
-                           variant.place,
-                           fmt::format("the variant {} makes other changes of {} than of {}",
-                                       quote(variant.name()), quote(from.name()), quote(*changed.surface)),
-                           "those of the latter are written",
-                           {}});
+        warn(variant,
+             fmt::format("the variant {} makes other changes of {} than of {}", quote(variant.name()),
+                         quote(from.name()), quote(*changed.surface)),
+             "those of the latter are written");
       }
     }
   }
   std::move(more.begin(), more.end(), std::back_inserter(to.children));
 }
 
-void VariantTranslation::finish(Element& root) const {
+/// A variant that is for other surfaces, too, is written for those that were translated.
+void VariantTranslation::tellOthers(const Element& set, const Element& variant) {
+  const auto uses = uses_.find(nameOf(set, variant));
+  if (uses == uses_.end()) return;
+  for (const std::string& element : uses->second) {
+    if (translated_.contains(element)) continue;
+    warn(variant,
+         fmt::format("the variant {} is for {}, too, which is no {}", quote(variant.name()), quote(element),
+                     kFrom),
+         fmt::format("it has the inputs that {} has become", quote(*changed_.at(&variant).surface)));
+  }
+}
+
+void VariantTranslation::finish(Element& root) {
   size_t next = 0;
   for (Element& set : root.children) {
     if (set.category != "variantset") continue;
@@ -637,8 +701,13 @@ void VariantTranslation::finish(Element& root) const {
       const auto changed = changed_.find(&read.children[i]);
       if (changed == changed_.end() || !changed->second.surface) continue;
       any = true;
-      std::erase_if(set.children[i].children, isInput);
-      for (const Element& input : changed->second.inputs) set.children[i].children.push_back(input);
+      std::vector<Element>& values = set.children[i].children;
+      std::erase_if(values, [&](const Element& one) {
+        return isInput(one) ||
+               (one.category == "input" && named(changed->second.inputs, one.name()) != nullptr);
+      });
+      values.insert(values.end(), changed->second.inputs.begin(), changed->second.inputs.end());
+      tellOthers(read, read.children[i]);
     }
     for (const std::string_view attribute : {"node", "nodedef"}) {
       if (!any || set.find(attribute) == nullptr) continue;
@@ -674,7 +743,8 @@ size_t translateIn(Element& owner, std::string_view as, VariantTranslation& vari
     made.place = child.place;
     made.attributes = {{"name", std::string(child.name())}, {"type", "surfaceshader"}};
     made.children = formulas.finish(as);
-    variants.surface(child, made, formulas, beside, before);
+    const std::string_view element = owner.category == "nodegraph" ? owner.name() : child.name();
+    variants.surface(child, element, made, formulas, beside, before);
     std::move(beside.begin(), beside.end(), std::back_inserter(children));
     children.push_back(std::move(made));
   }
