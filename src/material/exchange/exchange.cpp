@@ -29,7 +29,7 @@ bool isOfClosures(const material::Document& document, size_t material, Diagnosti
   if (made.closures.empty()) return false;
   said.push_back({"closures-not-written",
                   Severity::Error,
-                  {document.path, 0, 0, {}},
+                  made.surface_place.line == 0 ? Place{document.path, 0, 0, {}} : made.surface_place,
                   fmt::format("the material {} is made of closures", quote(made.name)),
                   "no other surface says the same; without edits the document is written as it was read",
                   {}});

@@ -23,7 +23,8 @@ inline constexpr std::string_view kSurfaces[] = {"gltf_pbr", "open_pbr_surface"}
 /// one of kSurfaces, or where that is empty as `open_pbr_surface` if it has terms that only that has, else as
 /// `gltf_pbr`. Patterns are nodegraphs and nodes, glTF's textures `gltf_image` nodes. What is read of it has
 /// the same graph, where the surface has all that the material has; what it has not is a warning, "not-said",
-/// with the property's JSON pointer. Images are named as seen from the folder; without one as in the file.
+/// with the property's JSON pointer, of a MaterialX document at the surface. Images are named as seen from
+/// the folder; without one as in the file.
 Written toMaterialX(const material::Document& document, std::vector<size_t> materials,
                     const material::Schema& schema, std::string_view surface = {},
                     const std::string& folder = {});

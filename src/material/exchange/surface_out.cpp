@@ -11,6 +11,7 @@
 #include "graph/text.h"
 #include "ir/types.h"
 #include "materialx/patterns.h"
+#include "support/say_once.h"
 
 namespace lacquer::exchange {
 
@@ -165,6 +166,7 @@ private:
   void openPbr();
   void unlit();
   void unsaid();
+  void warn(std::string pointer, std::string message, std::string help, std::string code = "not-said");
 
   const material::Document& document_;
   const material::Material& material_;
@@ -295,13 +297,10 @@ Source Translation::imageChannel(const material::Material::Texture& texture, int
   const int from = stored[static_cast<size_t>(channel)];
   if (from == gltf::kUnused) return {graph::Literal{ir::Type::Float, {1}}, {}};
   if (schema_.properties[texture.property].decl->srgb && (from == kAlpha) != (channel == kAlpha)) {
-    addBounded(said_,
-               {"channel-encoding",
-                Severity::Warning,
-                {document_.path, 0, 0, texture.info.pointer},
-                fmt::format("channel {} of the image is alpha in one of both, a colour in the other", from),
-                "the document decodes colours alone: the channel is decoded otherwise than in glTF",
-                {}});
+    warn(texture.info.pointer,
+         fmt::format("channel {} of the image is alpha in one of both, a colour in the other", from),
+         "the document decodes colours alone: the channel is decoded otherwise than in glTF",
+         "channel-encoding");
   }
   return storedChannel(texture, from);
 }
@@ -471,13 +470,9 @@ double Translation::tiling(const material::Material::Texture& texture) {
   const gltf::TextureTransform at = texture.info.transform.value_or(gltf::TextureTransform{});
   const double by = at.scale[0];
   if (texture.info.texCoord == 0 && at.rotation == 0 && by == at.scale[1] && by > 0) return by;
-  addBounded(said_,
-             {"not-said",
-              Severity::Warning,
-              {document_.path, 0, 0, texture.info.pointer},
-              "MaterialX's bump takes slopes over the first texture coordinate, neither turned nor stretched",
-              "the bumps are steeper or lower than in glTF, or lean elsewhere",
-              {}});
+  warn(texture.info.pointer,
+       "MaterialX's bump takes slopes over the first texture coordinate, neither turned nor stretched",
+       "the bumps are steeper or lower than in glTF, or lean elsewhere");
   return 1;
 }
 
@@ -650,22 +645,15 @@ Source Translation::brightestOf(const Source& color) {
 }
 
 void Translation::brightMetal() {
-  addBounded(said_,
-             {"not-said",
-              Severity::Warning,
-              {document_.path, 0, 0, fmt::format("/materials/{}/{}", material_.index, EXT "specular")},
-              "OpenPBR's specular_weight and specular_color change metals, too",
-              "where the metal shows, it is darker or brighter than in glTF: gltf_pbr says the same as glTF",
-              {}});
+  warn(fmt::format("/materials/{}/{}", material_.index, EXT "specular"),
+       "OpenPBR's specular_weight and specular_color change metals, too",
+       "where the metal shows, it is darker or brighter than in glTF: gltf_pbr says the same as glTF");
 }
 
 void Translation::brightGrazing() {
-  addBounded(said_, {"not-said",
-                     Severity::Warning,
-                     {document_.path, 0, 0, fmt::format("/materials/{}/{}", material_.index, EXT "specular")},
-                     "OpenPBR reflects more at grazing angles than a specularFactor below 1 says",
-                     "straight on it reflects the same: gltf_pbr says the same at all angles",
-                     {}});
+  warn(fmt::format("/materials/{}/{}", material_.index, EXT "specular"),
+       "OpenPBR reflects more at grazing angles than a specularFactor below 1 says",
+       "straight on it reflects the same: gltf_pbr says the same at all angles");
 }
 
 void Translation::openPbr() {
@@ -702,16 +690,19 @@ void Translation::unlit() {
   base("emission_color", covers ? "opacity" : "");
 }
 
+/// A document has elements and no pointers: there it is said of the surface, and once of all variants.
+void Translation::warn(std::string pointer, std::string message, std::string help, std::string code) {
+  Place place = material_.surface_place;
+  if (place.line == 0) place = {document_.path, 0, 0, std::move(pointer)};
+  addBoundedOnce(
+      said_, {std::move(code), Severity::Warning, std::move(place), std::move(message), std::move(help), {}});
+}
+
 /// All that the surface has no input for.
 void Translation::unsaid() {
-  const auto warn = [&](const std::string& path) {
-    const std::string own = material_.index < 0 ? "" : fmt::format("/materials/{}/{}", material_.index, path);
-    addBounded(said_, {"not-said",
-                       Severity::Warning,
-                       {document_.path, 0, 0, own},
-                       fmt::format("{} has no counterpart in {}", path, out_.category),
-                       "it is left out",
-                       {}});
+  const auto tell = [&](const std::string& path) {
+    warn(material_.index < 0 ? "" : fmt::format("/materials/{}/{}", material_.index, path),
+         fmt::format("{} has no counterpart in {}", path, out_.category), "it is left out");
   };
   for (const auto& number : material_.numbers) {
     const material::Property& property = schema_.properties[number.property];
@@ -720,11 +711,11 @@ void Translation::unsaid() {
     const auto count = static_cast<ptrdiff_t>(ir::componentCount(property.decl->type));
     if (by_default && std::equal(number.value.begin(), number.value.begin() + count, by_default->begin()))
       continue;
-    warn(property.path);
+    tell(property.path);
   }
   for (const auto& texture : material_.textures) {
     const material::Property& property = schema_.properties[texture.property];
-    if (!used_.contains(property.path)) warn(property.path);
+    if (!used_.contains(property.path)) tell(property.path);
   }
 }
 

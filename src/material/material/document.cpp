@@ -213,6 +213,7 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
     material.surface = std::move(read->surfaces[i].category);
     material.translation_error = read->surfaces[i].error;
     material.surface_pointer = std::move(read->surfaces[i].pointer);
+    material.surface_place = std::move(read->surfaces[i].place);
     material.displacement = std::move(read->displacements[i]);
     Diagnostics& own = read->of_materials[i];
     own.insert(own.end(), material.diagnostics.begin(), material.diagnostics.end());

@@ -45,6 +45,7 @@ struct Material {
   std::vector<std::pair<std::string, std::string>> ports;
   std::string surface;           ///< of a MaterialX document: "standard_surface"
   std::string surface_pointer;   ///< of closures: what pointers of its own numbers begin with, "/paint"
+  Place surface_place;           ///< of a MaterialX document: where that stands
   double translation_error = 0;  ///< where that was translated to properties: materialx::translationError()
   std::string displacement;      ///< the group whose only output moves the vertices; empty for none
   Diagnostics diagnostics;       ///< of this material; one of severity Error means: generate nothing for it

@@ -60,6 +60,7 @@ private:
     double error = 0;     ///< of its translation
     std::string element;  ///< its element's name; of a pattern's output none
     Place place;
+    Place surface_place;
     Scope* scope = nullptr;
     Diagnostics said;
     Json json;
@@ -126,6 +127,7 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   made.place = at.place;
   made.said = std::move(said);
   if (found.shader != nullptr) made.surface = found.shader->category;
+  made.surface_place = found.shader != nullptr ? found.shader->place : at.place;
   const auto wrong = [&](const Element& where, std::string code, std::string message, std::string help) {
     made.said.push_back(
         {std::move(code), Severity::Error, where.place, std::move(message), std::move(help), {}});
@@ -242,7 +244,7 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
   use.set("output", std::string(output.name()));
   made.scope = &patterns_.body(instance ? document_.root : owner, fmt::format("{}_pattern", name));
   const std::string property = "baseColorTexture";
-  made.place = output.place;
+  made.place = made.surface_place = output.place;
   tellRange(owner, output, made.said);
   const Element& from = instance ? uses_.emplace_back(std::move(use)) : output;
   std::optional<Source> source = patterns_.connected(*made.scope, from);
@@ -387,7 +389,8 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
     result.materials.push_back(std::move(made.json));
     result.of_materials.push_back(std::move(made.said));
     result.closures.push_back(std::move(made.closures));
-    result.surfaces.push_back({std::move(made.surface), made.error, std::move(made.pointer)});
+    result.surfaces.push_back(
+        {std::move(made.surface), made.error, std::move(made.pointer), std::move(made.surface_place)});
     const bool moved = !wrong && made.displacement != nullptr && !made.displacement->group().outputs.empty();
     result.displacements.push_back(moved ? made.displacement->group().name : std::string());
     result.procedurals.list.push_back(

@@ -46,6 +46,7 @@ struct Materials {
     std::string category;  ///< empty for a pattern
     double error = 0;      ///< how far the material is from it, where it was translated
     std::string pointer;   ///< of closures the element: "/paint", which pointers of its numbers begin with
+    Place place;           ///< of the element, of a pattern its output
   };
   std::vector<Surface> surfaces;
   /// Of each the group, of procedurals.patterns, whose output moves the vertices; empty for none.
