@@ -117,10 +117,10 @@ std::vector<size_t> wantedOf(const material::Document& document, const Strings& 
 /// The text of materials that were read: of the names, or all.
 std::string textOf(const material::Document& document, const material::Schema& schema,
                    const std::string& folder, const Strings& materials, const std::string& surface,
-                   Messages& messages) {
+                   const materialx::Element* read, Messages& messages) {
   const std::vector<size_t> wanted = wantedOf(document, materials, messages);
   if (wanted.empty()) return {};
-  exchange::Written written = exchange::toMaterialX(document, wanted, schema, surface, folder);
+  exchange::Written written = exchange::toMaterialX(document, wanted, schema, surface, folder, read);
   report(written.said, document.path, messages);
   return std::move(written.text);
 }
@@ -150,6 +150,16 @@ bool isAsRead(const SceneData& scene, const EditedGraphs& edited) {
   return text && materialx::isXml(*text);
 }
 
+/// The elements of a scene's MaterialX document; nothing of another file.
+std::optional<materialx::Element> elementsOf(const SceneData& scene) {
+  const Result<std::string> text = scene.text();
+  const Result<Limits> limits = limitsOf(scene.options);
+  if (!text || !limits || !materialx::isXml(*text)) return std::nullopt;
+  Result<materialx::Document> read =
+      materialx::readXml(*text, scene.document.path, *limits, scene.included());
+  return read ? std::optional(std::move(read->root)) : std::nullopt;
+}
+
 /// A scene's text, for that folder.
 std::string writtenOf(const SceneData& scene, const std::string& folder, const Strings& materials,
                       const std::string& surface, const EditedGraphs& edited, Messages& messages) {
@@ -161,10 +171,14 @@ std::string writtenOf(const SceneData& scene, const std::string& folder, const S
   }
   const Result<const material::Schema*> schema = scene.language->models.schema();
   if (!schema) return report(schema.error(), file, messages), std::string();
-  if (edited.empty()) return textOf(scene.document, **schema, folder, materials, surface, messages);
+  // Looks may speak of the others, where some are wanted.
+  const std::optional<materialx::Element> elements =
+      materials.empty() ? elementsOf(scene) : std::optional<materialx::Element>();
+  const materialx::Element* read = elements ? &*elements : nullptr;
+  if (edited.empty()) return textOf(scene.document, **schema, folder, materials, surface, read, messages);
   material::Document document = scene.document;
   exchange::putGraphs(document, edited, **schema);
-  return textOf(document, **schema, folder, materials, surface, messages);
+  return textOf(document, **schema, folder, materials, surface, read, messages);
 }
 
 /// The patterns of a graph of one's own.

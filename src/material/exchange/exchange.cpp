@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+#include <utility>
+
 #include "exchange/displacement_out.h"
+#include "exchange/looks_out.h"
 #include "exchange/pattern_out.h"
 #include "exchange/surface_out.h"
 #include "support/plain_name.h"
@@ -39,7 +43,8 @@ bool isOfClosures(const material::Document& document, size_t material, Diagnosti
 }  // namespace
 
 Written toMaterialX(const material::Document& document, std::vector<size_t> materials,
-                    const material::Schema& schema, std::string_view surface, const std::string& folder) {
+                    const material::Schema& schema, std::string_view surface, const std::string& folder,
+                    const Element* read) {
   Written written;
   std::erase_if(materials, [&](size_t i) { return isOfClosures(document, i, written.said); });
   if (materials.empty()) return written;
@@ -77,12 +82,16 @@ Written toMaterialX(const material::Document& document, std::vector<size_t> mate
   Element root;
   root.category = "materialx";
   root.attributes = {{"version", "1.39"}, {"colorspace", "lin_rec709"}};
+  for (size_t i = 0; read != nullptr && i < read->children.size(); ++i)
+    if (isOfGeometry(read->children[i])) patterns.take(read->children[i].name());
   patterns.write(root);
   std::vector<Element> shaders;
   std::vector<Element> surface_materials;
+  std::vector<std::string> names(document.materials.size());
   for (size_t i = 0; i < materials.size(); ++i) {
     const std::string& own = document.materials[materials[i]].name;
     const std::string material = patterns.free(own.empty() ? "material" : own);
+    names[materials[i]] = material;
     Element shader;
     shader.category = surfaces[i].category;
     shader.attributes = {{"name", patterns.free("SR_" + material)}, {"type", "surfaceshader"}};
@@ -105,6 +114,10 @@ Written toMaterialX(const material::Document& document, std::vector<size_t> mate
     root.children.push_back(std::move(surface_materials[i]));
   }
   nameDisplacements(root);
+  if (read != nullptr) {
+    std::vector<Element> looks = looksOf(*read, document, names, moved, written.said);
+    std::move(looks.begin(), looks.end(), std::back_inserter(root.children));
+  }
   written.text = materialx::toXml(root);
   return written;
 }

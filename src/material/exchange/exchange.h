@@ -7,6 +7,7 @@
 
 #include "material/material.h"
 #include "material/schema.h"
+#include "mtlx/element.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::exchange {
@@ -24,9 +25,9 @@ inline constexpr std::string_view kSurfaces[] = {"gltf_pbr", "open_pbr_surface"}
 /// `gltf_pbr`. Patterns are nodegraphs and nodes, glTF's textures `gltf_image` nodes. What is read of it has
 /// the same graph, where the surface has all that the material has; what it has not is a warning, "not-said",
 /// with the property's JSON pointer, of a MaterialX document at the surface. Images are named as seen from
-/// the folder; without one as in the file.
+/// the folder; without one as in the file. `read`: what the document was read of, for its looks; or null.
 Written toMaterialX(const material::Document& document, std::vector<size_t> materials,
                     const material::Schema& schema, std::string_view surface = {},
-                    const std::string& folder = {});
+                    const std::string& folder = {}, const materialx::Element* read = nullptr);
 
 }  // namespace lacquer::exchange

@@ -52,6 +52,8 @@ public:
   void write(materialx::Element& root);
   /// The surface's inputs, connected to the nodes of its body.
   void inputs(size_t surface, materialx::Element& shader);
+  /// Keeps a name from those that free() gives.
+  void take(std::string_view name) { names_.take(std::string(name)); }
   /// A name that no other element beside the nodegraphs has.
   std::string free(std::string_view name) { return names_.free(materialx::graphName(name)); }
 
