@@ -476,6 +476,10 @@ void PatternsOut::give(Scope& scope, Element& element, std::string_view name, co
     Components value = number->second;
     if (ir::componentCount(number->first.type) == 1) value.fill(value[0]);
     input.set("value", valueText(wanted.type, value));
+  } else if (const auto* file = std::get_if<graph::TextureRef>(&source.from)) {
+    // Of an instance; a node that samples it is not here.
+    if (const std::optional<size_t> place = graph_.findTexture(file->name))
+      texture(input, graph_.textures[*place]);
   } else {
     const Link made = converted(scope, link(scope, source), wanted);
     for (const auto& [attribute, value] : made.attributes) input.set(attribute, value);
