@@ -1,18 +1,19 @@
 // `./dev bench peers`: builds other renderers' fragment shaders for the works as an application would, in a browser, measures
 // them as ours are measured, compares the colours, and renews bench/peers.json, docs/cost.md and README.md.
-//   node peers.mjs ROOT LACQUER OUTPUT      OUTPUT has node_modules
-//   node peers.mjs ROOT                     the pages alone, from the records in bench/
+//   node peers.mjs ROOT LACQUER OUTPUT MATERIALX      OUTPUT has node_modules, MATERIALX its module for JavaScript, or nothing
+//   node peers.mjs ROOT                               the pages alone, from the records in bench/
 import { copyFileSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
 import { kIndices, kSize, points, readWork, writeEnvironment, writeScene, writeSheenTable } from './ball.mjs';
 import { bundle, open, pageOf } from './browser.mjs';
-import { compile, costs, distance, driver, ourColors, versionOf } from './measure.mjs';
+import { openMaterialX, shadersOf } from './materialx.mjs';
+import { compile, costs, distance, driver, ourColors, run, versionOf } from './measure.mjs';
 import { writeSheet } from './pictures.mjs';
 import { writePages, writeRecord } from './report.mjs';
 import { asFor, kNotDrawn, kPeers, kWorks } from './works.mjs';
 
-const [root, lacquer, output = root] = process.argv.slice(2).map((path) => resolve(path));
+const [root, lacquer, output = root, materialX = root] = process.argv.slice(2).map((path) => resolve(path));
 const modules = join(output, 'node_modules');
 const require = createRequire(join(output, 'package.json'));
 
@@ -23,23 +24,39 @@ function prepare() {
   writeSheenTable(join(output, 'sheen.png'));
 }
 
+/** MaterialX's module, and the peers that there are. */
+async function whoIsThere() {
+  const mx = await openMaterialX(materialX);
+  if (!mx) console.error(`bench peers: there is no MaterialX in ${materialX}: the tables and pictures go without it`);
+  return { mx, peers: kPeers.filter(({ environment }) => mx || !environment) };
+}
+
+/** What MaterialX draws of a work is the document that we write of it. */
+function ownShaders(mx, peer, work, file) {
+  if (!peer.environment) return null;
+  return shadersOf(mx, run(lacquer, 'graph', file, '--format', 'mtlx'), work.ibl ? peer.environment : 'none');
+}
+
 /** Theirs for one work: the costs come later, for all modules at once. */
-async function draw(page, peer, work) {
-  const glTF = readWork(join(root, 'bench/works', `${work.file}.gltf`));
+async function draw(page, mx, peer, work) {
+  const file = join(root, 'bench/works', `${work.file}.gltf`), glTF = readWork(file);
   const folder = `scenes/${peer.name}/${work.file}`;
   writeScene(join(output, folder), asFor(peer, work.file, glTF));
-  const asked = { scene: `/${folder}/ball.gltf`, environment: work.ibl, size: kSize, indices: kIndices, openpbr: Boolean(peer.openpbr) };
+  const asked = {
+    scene: `/${folder}/ball.gltf`, environment: work.ibl, size: kSize, indices: kIndices, openpbr: Boolean(peer.openpbr),
+    shaders: await ownShaders(mx, peer, work, file),
+  };
   const { source, pixels } = await page.draw(asked);
   return { work: work.name, peer: peer.name, pixels, module: compile(source, join(output, 'shaders', peer.name, work.name)) };
 }
 
 /** All works of one peer; what fails is said, and the others go on. */
-async function drawAll(context, peer) {
+async function drawAll(context, mx, peer) {
   const found = [];
   const page = await pageOf(context, peer.page);
   for (const work of kWorks) {
     try {
-      found.push(await draw(page, peer, work));
+      found.push(await draw(page, mx, peer, work));
       console.error(`bench peers: ${peer.title}: ${work.name}`);
     } catch (error) {
       console.error(`bench peers: ${peer.title}: ${work.name} failed: ${error.message}`);
@@ -50,14 +67,14 @@ async function drawAll(context, peer) {
   return found;
 }
 
-async function drawEverything() {
+async function drawEverything({ mx, peers }) {
   const { chromium } = require('playwright-core');
   const { context, close } = await open(chromium, output);
   const found = [];
   try {
-    for (const peer of kPeers) {
+    for (const peer of peers) {
       try {
-        found.push(...(await drawAll(context, peer)));
+        found.push(...(await drawAll(context, mx, peer)));
       } catch (error) {
         console.error(`bench peers: ${peer.title} does not run: ${error.message}`);
         process.exitCode = 1;
@@ -70,7 +87,7 @@ async function drawEverything() {
 }
 
 /** Adds the colours' distances; what the pictures are drawn from. */
-function compare(found, results) {
+function compare(found, results, peers) {
   const rows = [];
   for (const work of kWorks.filter(({ name }) => !kNotDrawn.has(name))) {
     const scene = join(output, 'scenes/ours', work.file);
@@ -78,7 +95,7 @@ function compare(found, results) {
     const ours = ourColors(lacquer, writeScene(scene, readWork(join(root, 'bench/works', `${work.file}.gltf`))), list);
     const theirs = found.filter((each) => each.work === work.name);
     for (const each of theirs) results[work.name][each.peer].colors = distance(ours, each.pixels, pixels);
-    rows.push({ ours, pixels, theirs: kPeers.map(({ name }) => theirs.find((each) => each.peer === name)?.pixels) });
+    rows.push({ ours, pixels, theirs: peers.map(({ name }) => theirs.find((each) => each.peer === name)?.pixels) });
   }
   return rows;
 }
@@ -86,14 +103,16 @@ function compare(found, results) {
 async function main() {
   if (!lacquer) return writePages(root);
   prepare();
-  await bundle(require('esbuild'), join(root, 'bench/peers/pages'), [...new Set(kPeers.map(({ page }) => page))], join(output, 'pages'));
-  const found = await drawEverything();
+  const there = await whoIsThere(), { mx, peers } = there;
+  await bundle(require('esbuild'), join(root, 'bench/peers/pages'), [...new Set(peers.map(({ page }) => page))], join(output, 'pages'));
+  const found = await drawEverything(there);
   if (found.length === 0) throw new Error('no peer drew anything');
   const results = Object.fromEntries(kWorks.map(({ name }) => [name, {}]));
   const rows = costs(lacquer, found.map(({ module }) => module));
   found.forEach(({ work, peer }, i) => (results[work][peer] = rows[i]));
-  const balls = compare(found, results);
-  const versions = Object.fromEntries(kPeers.map((peer) => [peer.package, versionOf(modules, peer.package)]));
+  const balls = compare(found, results, peers);
+  const version = ({ environment, package: name }) => (environment ? mx.getVersionString() : versionOf(modules, name));
+  const versions = Object.fromEntries(peers.map((peer) => [peer.package, version(peer)]));
   if (process.exitCode) throw new Error('something failed; bench/peers.json and the pages stay as they were');
   writeRecord(root, { versions, driver: driver(), results });
   writePages(root);

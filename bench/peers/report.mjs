@@ -5,6 +5,9 @@ import { kPeers, kWorks } from './works.mjs';
 const kBegin = '<!-- peers: -->', kEnd = '<!-- :peers -->';
 const pair = (gpu) => `${gpu.instructions} / ${gpu.inverse_throughput}`;
 
+/** Those that were there: MaterialX is not on npm. */
+const measuredPeers = ({ versions }) => kPeers.filter(({ package: name }) => name in versions);
+
 /** The fewest of each number among the peers that draw all of the work, on navi21; null where none does. */
 function best(work, results) {
   const complete = kPeers.filter(({ leavesOut }) => !leavesOut[work.file]);
@@ -27,20 +30,22 @@ function table(head, rows) {
 }
 
 function costTable(record, ours) {
+  const peers = measuredPeers(record);
   const cell = (work, peer) => {
     const got = record.works[work.name].peers[peer.name];
     if (!got) return 'failed';
     return peer.leavesOut[work.file] ? `(${pair(got.navi21)})` : pair(got.navi21);
   };
-  return table(['work', 'Lacquer', ...kPeers.map(({ title }) => title), 'Lacquer to the best'], kWorks.map((work) => {
+  return table(['work', 'Lacquer', ...peers.map(({ title }) => title), 'Lacquer to the best'], kWorks.map((work) => {
     const own = ours[work.name], least = record.works[work.name].best;
     const percent = (what) => `${Math.round((100 * own[what]) / least[what])} %`;
-    return [work.name, `**${pair(own)}**`, ...kPeers.map((peer) => cell(work, peer)),
+    return [work.name, `**${pair(own)}**`, ...peers.map((peer) => cell(work, peer)),
       least ? `${percent('instructions')} / ${percent('inverse_throughput')}` : 'none does it'];
   }));
 }
 
 function colorTable(record) {
+  const peers = measuredPeers(record);
   const drawn = kWorks.filter(({ name, ibl }) => ibl && Object.values(record.works[name].peers).some(({ colors }) => colors));
   const cell = (work, peer) => {
     const colors = record.works[work.name].peers[peer.name]?.colors;
@@ -48,9 +53,9 @@ function colorTable(record) {
     const text = `${colors.mean} / ${colors.max}`;
     return peer.leavesOut[work.file] ? `(${text})` : text;
   };
-  return table(['work', 'mean of ours', ...kPeers.map(({ title }) => title)], drawn.map((work) => {
+  return table(['work', 'mean of ours', ...peers.map(({ title }) => title)], drawn.map((work) => {
     const any = Object.values(record.works[work.name].peers).find(({ colors }) => colors);
-    return [work.name, any.colors.mean_of_ours, ...kPeers.map((peer) => cell(work, peer))];
+    return [work.name, any.colors.mean_of_ours, ...peers.map((peer) => cell(work, peer))];
   }));
 }
 
@@ -60,10 +65,11 @@ function peerTable(record) {
     return each.join('; ') || 'nothing';
   };
   return table(['peer', 'version', 'leaves out', 'does differently'],
-    kPeers.map((peer) => [peer.title, record.versions[peer.package], leftOut(peer), peer.differs]));
+    measuredPeers(record).map((peer) => [peer.title, record.versions[peer.package], leftOut(peer), peer.differs]));
 }
 
-function section(record, ours) {
+/** What stands between the marks of docs/cost.md. */
+export function section(record, ours) {
   return `
 ${record.driver}, navi21, instructions / inverse throughput, in brackets what is not the whole work:
 
@@ -84,7 +90,7 @@ function line(record, ours) {
     return Math.round((100 * ours[name].instructions) / record.works[name].best.instructions);
   });
   const titled = ({ title, package: name }) => `${title.replace(/ \(.*\)/, '')} ${record.versions[name]}`;
-  const versions = [...new Set(kPeers.map(titled))];
+  const versions = [...new Set(measuredPeers(record).map(titled))];
   return `${percents.slice(0, 3).join(', ')} and ${percents[3]} % of the fewest instructions that the ` +
     `${versions.slice(0, -1).join(', ')} or ${versions.at(-1)} need for the same work`;
 }

@@ -26,9 +26,26 @@ function withClearcoat(work) {
 
 const kNoCoat = "the coat's IOR, colour, darkening and anisotropy (it has no `KHR_materials_coat`; measured is a clearcoat)";
 
+/** MaterialX's lobes read a tangent, whether they are anisotropic or not. */
+function withTangents(work) {
+  const [primitive] = work.meshes[0].primitives, attributes = { POSITION: 0, NORMAL: 1, TANGENT: 2, TEXCOORD_0: 3 };
+  return { ...work, meshes: [{ primitives: [{ ...primitive, attributes }] }] };
+}
+
+const kMaterialX = {
+  package: 'materialx', page: 'materialx', adapt: withTangents,
+  leavesOut: {
+    w3: "the rotation of the coat's anisotropy (`open_pbr_surface` has none)",
+    b: 'what is behind the ball (it refracts the environment) and the attenuation (the generator drops volumes)',
+  },
+  differs: 'its numbers are constants, where all others have uniforms; compensates direct light, too; the diffuse lobe gets what the ' +
+    "specular albedo by the view leaves, from a fit; a film's Fresnel by two terms of Airy's sum",
+};
+
 /**
  * `package` tells the version; `page` is the script in pages/; `leavesOut` has, for files of works, what the peer does not
- * draw: such a figure is not for the same work. `differs` is what its text and its pictures show.
+ * draw: such a figure is not for the same work. `differs` is what its text and its pictures show. `environment` is MaterialX's
+ * way to image-based light: see materialx.mjs.
  */
 export const kPeers = [
   {
@@ -58,7 +75,16 @@ export const kPeers = [
       'spherical harmonics; 16 taps of the environment for an anisotropic lobe, in a loop that the estimate counts eightfold; in ' +
       'direct light the slope of an anisotropic lobe is squared once more, which makes highlights narrower and brighter',
   },
+  {
+    ...kMaterialX, name: 'materialx_sampled', title: 'MaterialX (sampled)', environment: 'sampled',
+    differs: `${kMaterialX.differs}; its default environment, 16 samples for each lobe, in loops that the estimate counts eightfold ` +
+      'where the driver does not unroll them',
+  },
+  {
+    ...kMaterialX, name: 'materialx_prefiltered', title: 'MaterialX (prefiltered)', environment: 'prefiltered',
+    differs: 'as above, with one lookup for each lobe, which knows no anisotropy',
+  },
 ];
 
 /** The work as a peer gets it. */
-export const asFor = (peer, file, work) => (peer.fallback?.[file] ?? ((same) => same))(work);
+export const asFor = (peer, file, work) => (peer.fallback?.[file] ?? peer.adapt ?? ((same) => same))(work);

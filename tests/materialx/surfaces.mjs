@@ -4,33 +4,22 @@
 //     node surfaces.mjs FOLDER_OF_MATERIALX FILE.mtlx OUTPUT_FOLDER
 import fs from 'fs';
 import path from 'path';
-import {pathToFileURL} from 'url';
+import { generatorOf, openMaterialX, saidBy } from '../../bench/peers/materialx.mjs';
 
 const [folder, file, output] = process.argv.slice(2);
-const {default: MaterialX} = await import(pathToFileURL(path.join(folder, 'JsMaterialXGenShader.mjs')).href);
-const mx = await MaterialX({
-  locateFile: name => path.join(folder, name),
-  wasmBinary: fs.readFileSync(path.join(folder, 'JsMaterialXGenShader.wasm')),
-});
-const generator = mx.VkShaderGenerator.create();
-const context = new mx.GenContext(generator);
-const library = mx.loadStandardLibraries(context);
-const document = mx.createDocument();
-document.importLibrary(library);
+const mx = await openMaterialX(folder);
 const text = fs.readFileSync(file, 'utf8');
-await mx.readFromXmlString(document, text);
-const settings = context.getOptions();
-settings.hwMaxActiveLightSources = 1;
-settings.hwSpecularEnvironmentMethod = mx.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_PREFILTER;
-settings.shaderInterfaceType = mx.ShaderInterfaceType.SHADER_INTERFACE_REDUCED;
-mx.HwShaderGenerator.bindLightShader(library.getNodeDef('ND_directional_light'), 1, context);
+const { document, generate } = await generatorOf(mx, 'VkShaderGenerator', text, {
+  hwSpecularEnvironmentMethod: mx.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_PREFILTER,
+  shaderInterfaceType: mx.ShaderInterfaceType.SHADER_INTERFACE_REDUCED,
+});
 fs.mkdirSync(output, {recursive: true});
 for (const [, name] of text.matchAll(/<\w+ name="(\w+)" type="surfaceshader"/g)) {
   try {
-    const shader = generator.generate(name, document.getNode(name), context);
+    const shader = generate(name, document.getNode(name));
     fs.writeFileSync(path.join(output, `${name}.pixel`), shader.getSourceCode('pixel'));
   } catch (error) {
-    console.log(name, typeof error === 'number' ? mx.getExceptionMessage(error) : error.message ?? error);
+    console.log(name, saidBy(mx, error));
     process.exitCode = 1;
   }
 }

@@ -2,13 +2,10 @@
 // WebAssembly module. Prints nothing for those that it takes.
 import fs from 'fs';
 import path from 'path';
+import { openMaterialX, saidBy } from '../../bench/peers/materialx.mjs';
 
 const [folder, ...files] = process.argv.slice(2);
-const {default: load} = await import(path.join(folder, 'JsMaterialXGenShader.mjs'));
-const mx = await load({
-  locateFile: name => path.join(folder, name),
-  wasmBinary: fs.readFileSync(path.join(folder, 'JsMaterialXGenShader.wasm')),
-});
+const mx = await openMaterialX(folder);
 const library = mx.loadStandardLibraries(new mx.GenContext(mx.VkShaderGenerator.create()));
 for (const file of files) {
   const document = mx.createDocument();
@@ -16,7 +13,7 @@ for (const file of files) {
   try {
     await mx.readFromXmlString(document, fs.readFileSync(file, 'utf8'));
   } catch (error) {
-    console.log(file, typeof error === 'number' ? mx.getExceptionMessage(error) : error.message);
+    console.log(file, saidBy(mx, error));
     continue;
   }
   const said = {};
