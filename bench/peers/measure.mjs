@@ -1,6 +1,6 @@
 // From a peer's shader to its costs and its colours' distance from ours.
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { vulkanGlsl } from './convert.mjs';
 
@@ -25,11 +25,30 @@ export function compile(source, path) {
   return `${path}.frag.spv`;
 }
 
-/** What `lacquer cost` says of modules, in their order, with the fields of bench/cost.json. */
+/** Bytes of a module without names. */
+export function bytesOf(module) {
+  const bare = `${module}.bare`;
+  run('spirv-opt', '--strip-debug', module, '-o', bare);
+  const { size } = statSync(bare);
+  rmSync(bare);
+  return size;
+}
+
+/** The same of our fragment shader for a work, as bench/cost.json has its cost. */
+export function ourBytes(lacquer, file, ibl, folder) {
+  rmSync(folder, { recursive: true, force: true });
+  const flags = ['--lights', 'directional:1', '--target', 'spirv', '--quiet', ...(ibl ? [] : ['--no-ibl'])];
+  run(lacquer, 'gen', file, '-o', folder, ...flags);
+  const modules = readdirSync(join(folder, 'spirv')).filter((name) => name.endsWith('.frag.spv'));
+  if (modules.length !== 1) throw new Error(`${file}: ${modules.length} fragment shaders, not one`);
+  return bytesOf(join(folder, 'spirv', modules[0]));
+}
+
+/** What `lacquer cost` says of modules, in their order, with the fields of bench/cost.json, and their bytes. */
 export function costs(lacquer, modules) {
   const { shaders } = JSON.parse(run(lacquer, 'cost', '--json', ...modules));
   return shaders.map(({ shader, spirv_instructions, gpus }, i) => {
-    const row = { spirv_instructions };
+    const row = { spirv_instructions, bytes: bytesOf(modules[i]) };
     for (const family of ['navi21', 'gfx1100']) {
       const got = gpus?.[family];
       if (!got?.instructions) throw new Error(`${modules[i]}: ${got?.problem ?? `${family} did not compile ${shader}`}`);

@@ -8,7 +8,7 @@ import { join, resolve } from 'node:path';
 import { kIndices, kSize, points, readWork, writeEnvironment, writeScene, writeSheenTable } from './ball.mjs';
 import { bundle, open, pageOf } from './browser.mjs';
 import { openMaterialX, shadersOf } from './materialx.mjs';
-import { compile, costs, distance, driver, ourColors, run, versionOf } from './measure.mjs';
+import { compile, costs, distance, driver, ourBytes, ourColors, run, versionOf } from './measure.mjs';
 import { writeSheet } from './pictures.mjs';
 import { writePages, writeRecord } from './report.mjs';
 import { asFor, kNotDrawn, kPeers, kWorks } from './works.mjs';
@@ -113,8 +113,11 @@ async function main() {
   const balls = compare(found, results, peers);
   const version = ({ environment, package: name }) => (environment ? mx.getVersionString() : versionOf(modules, name));
   const versions = Object.fromEntries(peers.map((peer) => [peer.package, version(peer)]));
+  const bytes = Object.fromEntries(kWorks.map(({ name, file, ibl }) => {
+    return [name, ourBytes(lacquer, join(root, 'bench/works', `${file}.gltf`), ibl, join(output, 'shaders/ours', name))];
+  }));
   if (process.exitCode) throw new Error('something failed; bench/peers.json and the pages stay as they were');
-  writeRecord(root, { versions, driver: driver(), results });
+  writeRecord(root, { versions, driver: driver(), results, bytes });
   writePages(root);
   writeSheet(join(root, 'docs/images/peers.png'), balls, 2);
   writeSheet(join(output, 'balls.png'), balls, 1);

@@ -17,10 +17,12 @@ function best(work, results) {
   return { instructions: least('instructions'), inverse_throughput: least('inverse_throughput') };
 }
 
-/** The record as it is written: versions, and for each work the best and what each peer needs. */
-export function record({ versions, driver, results }) {
+/** The record as it is written: versions, and for each work the best, our bytes and what each peer needs. */
+export function record({ versions, driver, results, bytes }) {
   const works = {};
-  for (const work of kWorks) works[work.name] = { best: best(work, results[work.name]), peers: results[work.name] };
+  for (const work of kWorks) {
+    works[work.name] = { best: best(work, results[work.name]), bytes: bytes[work.name], peers: results[work.name] };
+  }
   return { driver, versions, works };
 }
 
@@ -41,6 +43,18 @@ function costTable(record, ours) {
     const percent = (what) => `${Math.round((100 * own[what]) / least[what])} %`;
     return [work.name, `**${pair(own)}**`, ...peers.map((peer) => cell(work, peer)),
       least ? `${percent('instructions')} / ${percent('inverse_throughput')}` : 'none does it'];
+  }));
+}
+
+function bytesTable(record) {
+  const peers = measuredPeers(record), shown = (bytes) => (bytes / 1000).toFixed(1);
+  const cell = (work, peer) => {
+    const got = record.works[work.name].peers[peer.name];
+    if (!got) return 'failed';
+    return peer.leavesOut[work.file] ? `(${shown(got.bytes)})` : shown(got.bytes);
+  };
+  return table(['work', 'Lacquer', ...peers.map(({ title }) => title)], kWorks.map((work) => {
+    return [work.name, `**${shown(record.works[work.name].bytes)}**`, ...peers.map((peer) => cell(work, peer))];
   }));
 }
 
@@ -74,6 +88,10 @@ export function section(record, ours) {
 ${record.driver}, navi21, instructions / inverse throughput, in brackets what is not the whole work:
 
 ${costTable(record, ours)}
+
+Kilobytes of the fragment stage's SPIR-V without names:
+
+${bytesTable(record)}
 
 ${peerTable(record)}
 
