@@ -79,6 +79,7 @@ TEST_F(Kept, ColourSpacesAreThoseOfTheElementsAround) {
   <nodegraph name="NG" colorspace="srgb_texture">
     <constant name="own" type="color3"><input name="value" type="color3" value="0.5, 0.25, 0.5" colorspace="lin_rec709"/></constant>
     <constant name="as" type="color3"><input name="value" type="color3" value="0.5, 0.25, 0.5"/></constant>
+    <constant name="of" type="color3" colorspace=""><input name="value" type="color3" value="0.25, 0.25, 0.5"/></constant>
     <output name="out" type="color3" nodename="own"/>
   </nodegraph>
 </materialx>)");
@@ -87,6 +88,22 @@ TEST_F(Kept, ColourSpacesAreThoseOfTheElementsAround) {
   const std::string value = "<input name=\"value\" type=\"color3\" value=\"0.5, 0.25, 0.5\"";
   EXPECT_TRUE(has(text, value + " colorspace=\"lin_rec709\"/>")) << text;
   EXPECT_TRUE(has(text, value + "/>")) << text;
+  EXPECT_TRUE(has(text, "<constant name=\"of\" type=\"color3\" colorspace=\"\">")) << text;
+}
+
+TEST_F(Kept, AnIncludedFileHasNoColourSpaceOfTheDocument) {
+  Options options;
+  options.document_texts = {{"in.mtlx", R"(<materialx version="1.39" colorspace="">
+  <nodegraph name="NG">
+    <constant name="c" type="color3"><input name="value" type="color3" value="0.5, 0.25, 0.5"/></constant>
+    <output name="out" type="color3" nodename="c"/>
+  </nodegraph>
+</materialx>)"}};
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39" colorspace="srgb_texture"
+  xmlns:xi="http://www.w3.org/2001/XInclude"><xi:include href="in.mtlx"/></materialx>)",
+                                        "paint.mtlx", options, messages_);
+  ASSERT_TRUE(scene) << said();
+  EXPECT_TRUE(has(written(scene), "value=\"0.5, 0.25, 0.5\" colorspace=\"\"/>")) << written(scene);
 }
 
 TEST_F(Kept, DocumentsAreWrittenAsTheyWereRead) {

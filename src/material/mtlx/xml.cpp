@@ -120,6 +120,17 @@ void tellUnknown(const Element& scope, Diagnostics& said) {
 /// What inputs have of the elements around them.
 struct Inherited {
   std::string colorspace, fileprefix, geomprefix;
+  bool without_space = false;  ///< an element says that it has none, within one that has
+
+  /// What an element says itself.
+  void take(const Element& own) {
+    if (const std::string* space = own.find("colorspace")) {
+      without_space = space->empty() && (without_space || !colorspace.empty());
+      colorspace = *space;
+    }
+    if (const std::string* prefix = own.find("fileprefix")) fileprefix = *prefix;
+    if (const std::string* prefix = own.find("geomprefix")) geomprefix = *prefix;
+  }
 };
 
 class XmlReader {
@@ -231,9 +242,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
     attributes(root, own);
     const int minor = version(own);
     Inherited inside = around;
-    if (const std::string* space = own.find("colorspace")) inside.colorspace = *space;
-    if (const std::string* prefix = own.find("fileprefix")) inside.fileprefix = *prefix;
-    if (const std::string* prefix = own.find("geomprefix")) inside.geomprefix = *prefix;
+    inside.take(own);
     if (into.attributes.empty()) {
       into.attributes = own.attributes;
       into.place = own.place;
@@ -316,8 +325,8 @@ int XmlReader::version(const Element& root) {
 void XmlReader::handDown(Element& element, const Inherited& around) const {
   const std::string_view type = element.get("type");
   const bool file = type == "filename";
-  if ((file || type == "color3" || type == "color4") && !around.colorspace.empty() &&
-      element.find("colorspace") == nullptr)
+  if ((file || type == "color3" || type == "color4") &&
+      (!around.colorspace.empty() || around.without_space) && element.find("colorspace") == nullptr)
     element.set("colorspace", around.colorspace);
   const std::string* value = element.find("value");
   if (file && value != nullptr && !value->empty() && !around.fileprefix.empty() && !value->starts_with('/'))
@@ -384,9 +393,7 @@ void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& 
     element.place = placeOf(node.offset_debug());
     attributes(node, element);
     Inherited inside = around;
-    if (const std::string* space = element.find("colorspace")) inside.colorspace = *space;
-    if (const std::string* prefix = element.find("fileprefix")) inside.fileprefix = *prefix;
-    if (const std::string* prefix = element.find("geomprefix")) inside.geomprefix = *prefix;
+    inside.take(element);
     handDown(element, inside);
     elements(node, element, inside, depth + 1);
   }
