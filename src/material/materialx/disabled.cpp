@@ -1,6 +1,7 @@
 // Nodes that a document disables: what stands in their place.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,47 +13,80 @@ namespace lacquer::materialx {
 namespace {
 
 /// The inputs that MaterialX's own nodes pass on, by their definitions' `defaultinput`.
-constexpr std::array<std::string_view, 7> kPassedOn = {"in1", "in", "bg", "iny", "normal", "texcoord", "top"};
+constexpr std::array<std::string_view, 4> kPassedOn = {"in1", "in", "bg", "iny"};
 
-/// What a definition of the document says that its output is where the node is disabled; null for one that
-/// the document does not define.
-const Element* outputOf(const Element& document, const Element& node) {
+/// Those of its nodes that pass on something else, or a number that is not 0, by their definitions.
+struct OwnDefault {
+  std::string_view node, input, value;
+};
+constexpr std::array<OwnDefault, 10> kOwnDefaults = {{{"normalmap", "normal", {}},
+                                                      {"place2d", "texcoord", {}},
+                                                      {"normal", {}, "0, 1, 0"},
+                                                      {"tangent", {}, "1, 0, 0"},
+                                                      {"bitangent", {}, "0, 0, 1"},
+                                                      {"frame", {}, "1"},
+                                                      {"determinant", {}, "1"},
+                                                      {"heighttonormal", {}, "0.5, 0.5, 1"},
+                                                      {"hextilednormalmap", {}, "0.5, 0.5, 1"},
+                                                      {"not", {}, "true"}}};
+
+/// What stands for a node: an input of its own, or of its definition, or a value.
+struct Instead {
+  const Element* input = nullptr;
+  std::string_view value = {};
+};
+
+/// By a definition of the document; nothing for a node that the document does not define.
+std::optional<Instead> byDefinition(const Element& document, const Element& node) {
   for (const Element& nodedef : document.children) {
     if (nodedef.category != "nodedef" || nodedef.get("node") != node.category) continue;
-    for (const Element& port : nodedef.children)
-      if (port.category == "output" && port.get("type") == node.get("type")) return &port;
+    for (const Element& port : nodedef.children) {
+      if (port.category != "output" || port.get("type") != node.get("type")) continue;
+      const std::string_view name = port.get("defaultinput");
+      const Element* own = node.child("input", name);
+      return Instead{own != nullptr ? own : nodedef.child("input", name), port.get("default")};
+    }
   }
-  return nullptr;
+  return std::nullopt;
 }
 
-/// The input that a disabled node passes on; null where it gives a number.
-const Element* passedOn(const Element* output, const Element& node) {
-  if (output != nullptr) return node.child("input", output->get("defaultinput"));
+Instead insteadOf(const Element& document, const Element& node) {
+  if (const std::optional<Instead> own = byDefinition(document, node)) return *own;
+  const auto known = std::find_if(kOwnDefaults.begin(), kOwnDefaults.end(),
+                                  [&](const OwnDefault& one) { return one.node == node.category; });
+  if (known != kOwnDefaults.end()) return {node.child("input", known->input), known->value};
   for (const std::string_view name : kPassedOn) {
     const Element* in = node.child("input", name);
-    if (in != nullptr && in->get("type") == node.get("type")) return in;
+    if (in != nullptr && in->get("type") == node.get("type")) return {in, {}};
   }
-  return nullptr;
+  return {};
 }
 
 /// A node that gives what is passed on, or a number: the definition's, or 0.
 void replace(const Element& document, Element& node) {
-  const Element* output = outputOf(document, node);
-  const Element* in = passedOn(output, node);
+  const Instead instead = insteadOf(document, node);
   const ir::Type type = *typeOf(node.get("type"));
+  const bool passes = instead.input != nullptr;
   Element port{"input", {}, {}, node.place};
-  if (in != nullptr) port = *in;
-  port.set("name", in != nullptr ? "in" : "value");
+  if (passes) port = *instead.input;
+  port.set("name", passes ? "in" : "value");
   port.set("type", std::string(node.get("type")));
-  if (in == nullptr && output != nullptr && output->find("default") != nullptr) {
-    port.set("value", std::string(output->get("default")));
-  } else if (in == nullptr) {
+  if (!passes && !instead.value.empty()) {
+    port.set("value", std::string(instead.value));
+  } else if (!passes) {
     std::string zeros = type == ir::Type::Bool ? "false" : "0";
     for (int i = 1; i < ir::componentCount(type); ++i) zeros += ", 0";
     port.set("value", zeros);
   }
-  node.category = in != nullptr ? "dot" : "constant";
-  node.children = {std::move(port)};
+  // These pass on what the geometry has where they are given nothing.
+  const bool place = !passes && node.category == "place2d";
+  const bool normal = !passes && node.category == "normalmap";
+  node.category = passes ? "dot" : place ? "texcoord" : normal ? "normal" : "constant";
+  node.children.clear();
+  if (!place && !normal) node.children.push_back(std::move(port));
+  if (normal)
+    node.children.push_back(
+        {"input", {{"name", "space"}, {"type", "string"}, {"value", "world"}}, {}, node.place});
   std::erase_if(node.attributes,
                 [](const auto& one) { return one.first == "nodedef" || one.first == "version"; });
 }

@@ -201,7 +201,8 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
       continue;
     error(input, "unknown-input",
           fmt::format("the node {} has no input {}", quote(element.category), quote(input.name())),
-          lang::didYouMean(input.name(), names));
+          input.name() == "disable" ? "it is read as a value, of a node with one output"
+                                    : lang::didYouMean(input.name(), names));
     unknown = true;
   }
   if (unknown) return nullptr;
