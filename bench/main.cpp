@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "bench/cost.h"
+#include "bench/drivers.h"
 #include "bench/error.h"
 #include "bench/estimate.h"
 #include "bench/fronts.h"
@@ -45,6 +46,8 @@ constexpr Verb kVerbs[] = {
 int run(int argc, char** argv) {
   if (argc == 4 && std::string_view(argv[1]) == "repeat")
     return lacquer::bench::repeat(argv[2], std::strtoul(argv[3], nullptr, 10));
+  if (argc > 2 && std::string_view(argv[1]) == "drivers")
+    return lacquer::bench::printDriverTimes({argv + 2, argv + argc});
   for (const Verb& verb : kVerbs) {
     if (argc == 2 && verb.name == argv[1]) return verb.run();
   }

@@ -26,7 +26,7 @@ export function compile(source, path) {
 }
 
 /** Bytes of a module without names. */
-export function bytesOf(module) {
+function bytesOf(module) {
   const bare = `${module}.bare`;
   run('spirv-opt', '--strip-debug', module, '-o', bare);
   const { size } = statSync(bare);
@@ -34,21 +34,27 @@ export function bytesOf(module) {
   return size;
 }
 
-/** The same of our fragment shader for a work, as bench/cost.json has its cost. */
-export function ourBytes(lacquer, file, ibl, folder) {
+/** Our fragment shader for a work, as bench/cost.json has its cost. */
+export function ourModule(lacquer, file, ibl, folder) {
   rmSync(folder, { recursive: true, force: true });
   const flags = ['--lights', 'directional:1', '--target', 'spirv', '--quiet', ...(ibl ? [] : ['--no-ibl'])];
   run(lacquer, 'gen', file, '-o', folder, ...flags);
   const modules = readdirSync(join(folder, 'spirv')).filter((name) => name.endsWith('.frag.spv'));
   if (modules.length !== 1) throw new Error(`${file}: ${modules.length} fragment shaders, not one`);
-  return bytesOf(join(folder, 'spirv', modules[0]));
+  return join(folder, 'spirv', modules[0]);
 }
 
-/** What `lacquer cost` says of modules, in their order, with the fields of bench/cost.json, and their bytes. */
+/** Of modules, in their order: their bytes, and milliseconds in which the driver makes a pipeline of each. */
+export function sizes(bench, modules) {
+  const times = JSON.parse(run(bench, 'drivers', ...modules));
+  return modules.map((module, i) => ({ bytes: bytesOf(module), driver_ms: Number(times[i].toPrecision(3)) }));
+}
+
+/** What `lacquer cost` says of modules, in their order, with the fields of bench/cost.json. */
 export function costs(lacquer, modules) {
   const { shaders } = JSON.parse(run(lacquer, 'cost', '--json', ...modules));
   return shaders.map(({ shader, spirv_instructions, gpus }, i) => {
-    const row = { spirv_instructions, bytes: bytesOf(modules[i]) };
+    const row = { spirv_instructions };
     for (const family of ['navi21', 'gfx1100']) {
       const got = gpus?.[family];
       if (!got?.instructions) throw new Error(`${modules[i]}: ${got?.problem ?? `${family} did not compile ${shader}`}`);

@@ -1,14 +1,15 @@
 // `./dev bench peers`: builds other renderers' fragment shaders for the works as an application would, in a browser, measures
 // them as ours are measured, compares the colours, and renews bench/peers.json, docs/cost.md and README.md.
-//   node peers.mjs ROOT LACQUER OUTPUT MATERIALX      OUTPUT has node_modules, MATERIALX its module for JavaScript, or nothing
+//   node peers.mjs ROOT LACQUER OUTPUT MATERIALX      LACQUER has bench/lacquer_bench beside it, OUTPUT has node_modules, MATERIALX
+//                                                     its module for JavaScript, or nothing
 //   node peers.mjs ROOT                               the pages alone, from the records in bench/
 import { copyFileSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { join, resolve } from 'node:path';
+import { dirname, join, resolve } from 'node:path';
 import { kIndices, kSize, points, readWork, writeEnvironment, writeScene, writeSheenTable } from './ball.mjs';
 import { bundle, open, pageOf } from './browser.mjs';
 import { openMaterialX, shadersOf } from './materialx.mjs';
-import { compile, costs, distance, driver, ourBytes, ourColors, run, versionOf } from './measure.mjs';
+import { compile, costs, distance, driver, ourColors, ourModule, run, sizes, versionOf } from './measure.mjs';
 import { writeSheet } from './pictures.mjs';
 import { writePages, writeRecord } from './report.mjs';
 import { asFor, kNotDrawn, kPeers, kWorks } from './works.mjs';
@@ -108,16 +109,18 @@ async function main() {
   const found = await drawEverything(there);
   if (found.length === 0) throw new Error('no peer drew anything');
   const results = Object.fromEntries(kWorks.map(({ name }) => [name, {}]));
-  const rows = costs(lacquer, found.map(({ module }) => module));
-  found.forEach(({ work, peer }, i) => (results[work][peer] = rows[i]));
+  const theirs = found.map(({ module }) => module), bench = join(dirname(lacquer), 'bench/lacquer_bench');
+  const rows = costs(lacquer, theirs), more = sizes(bench, theirs);
+  found.forEach(({ work, peer }, i) => (results[work][peer] = { ...rows[i], ...more[i] }));
   const balls = compare(found, results, peers);
   const version = ({ environment, package: name }) => (environment ? mx.getVersionString() : versionOf(modules, name));
   const versions = Object.fromEntries(peers.map((peer) => [peer.package, version(peer)]));
-  const bytes = Object.fromEntries(kWorks.map(({ name, file, ibl }) => {
-    return [name, ourBytes(lacquer, join(root, 'bench/works', `${file}.gltf`), ibl, join(output, 'shaders/ours', name))];
+  const own = sizes(bench, kWorks.map(({ name, file, ibl }) => {
+    return ourModule(lacquer, join(root, 'bench/works', `${file}.gltf`), ibl, join(output, 'shaders/ours', name));
   }));
+  const ours = Object.fromEntries(kWorks.map(({ name }, i) => [name, own[i]]));
   if (process.exitCode) throw new Error('something failed; bench/peers.json and the pages stay as they were');
-  writeRecord(root, { versions, driver: driver(), results, bytes });
+  writeRecord(root, { versions, driver: driver(), results, ours });
   writePages(root);
   writeSheet(join(root, 'docs/images/peers.png'), balls, 2);
   writeSheet(join(output, 'balls.png'), balls, 1);

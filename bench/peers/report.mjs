@@ -17,11 +17,11 @@ function best(work, results) {
   return { instructions: least('instructions'), inverse_throughput: least('inverse_throughput') };
 }
 
-/** The record as it is written: versions, and for each work the best, our bytes and what each peer needs. */
-export function record({ versions, driver, results, bytes }) {
+/** The record as it is written: versions, and for each work the best, our sizes and what each peer needs. */
+export function record({ versions, driver, results, ours }) {
   const works = {};
   for (const work of kWorks) {
-    works[work.name] = { best: best(work, results[work.name]), bytes: bytes[work.name], peers: results[work.name] };
+    works[work.name] = { best: best(work, results[work.name]), ours: ours[work.name], peers: results[work.name] };
   }
   return { driver, versions, works };
 }
@@ -46,15 +46,16 @@ function costTable(record, ours) {
   }));
 }
 
-function bytesTable(record) {
-  const peers = measuredPeers(record), shown = (bytes) => (bytes / 1000).toFixed(1);
+function sizeTable(record) {
+  const peers = measuredPeers(record);
+  const shown = ({ bytes, driver_ms }) => `${(bytes / 1000).toFixed(1)} / ${driver_ms.toFixed(1)}`;
   const cell = (work, peer) => {
     const got = record.works[work.name].peers[peer.name];
     if (!got) return 'failed';
-    return peer.leavesOut[work.file] ? `(${shown(got.bytes)})` : shown(got.bytes);
+    return peer.leavesOut[work.file] ? `(${shown(got)})` : shown(got);
   };
   return table(['work', 'Lacquer', ...peers.map(({ title }) => title)], kWorks.map((work) => {
-    return [work.name, `**${shown(record.works[work.name].bytes)}**`, ...peers.map((peer) => cell(work, peer))];
+    return [work.name, `**${shown(record.works[work.name].ours)}**`, ...peers.map((peer) => cell(work, peer))];
   }));
 }
 
@@ -89,9 +90,10 @@ ${record.driver}, navi21, instructions / inverse throughput, in brackets what is
 
 ${costTable(record, ours)}
 
-Kilobytes of the fragment stage's SPIR-V without names:
+Kilobytes of the fragment stage's SPIR-V without names / milliseconds of processor time in which the driver makes a
+pipeline of it:
 
-${bytesTable(record)}
+${sizeTable(record)}
 
 ${peerTable(record)}
 

@@ -58,6 +58,8 @@ TEST_F(Driver, TellsTheSameOnEveryRun) {
     EXPECT_EQ(first.outcomes[0].disassembly, "");
     for (const Outcome& outcome : second.outcomes) {
       EXPECT_EQ(outcome.statistics, first.outcomes[0].statistics);
+      EXPECT_GT(outcome.driver_ms, 0);
+      EXPECT_LT(outcome.driver_ms, 10'000);
       EXPECT_NE(outcome.disassembly.find("image_sample"), std::string::npos);
     }
   }

@@ -19,7 +19,7 @@ test('the best is of peers that do all of a work, each number for itself', () =>
   const costing = (instructions, inverse_throughput) => ({ navi21: { instructions, inverse_throughput } });
   const peers = { khronos: costing(10, 80), three: costing(20, 70), babylon: costing(30, 90), babylon_openpbr: costing(40, 100) };
   const names = Object.keys(JSON.parse(readFileSync(join(kRoot, 'bench/peers.json'), 'utf8')).works);
-  const { works } = record({ versions: {}, driver: '', bytes: {}, results: Object.fromEntries(names.map((name) => [name, peers])) });
+  const { works } = record({ versions: {}, driver: '', ours: {}, results: Object.fromEntries(names.map((name) => [name, peers])) });
   assert.deepEqual(works.W0.best, { instructions: 10, inverse_throughput: 70 });
   // The others have no coat, or not all of it.
   assert.deepEqual(works.W3.best, { instructions: 40, inverse_throughput: 100 });

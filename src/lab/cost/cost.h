@@ -44,6 +44,7 @@ struct Outcome {
   std::optional<Statistics> statistics;
   std::string disassembly;  ///< the GPU's instructions as text; empty when they were not asked for
   std::string problem;      ///< why there are no statistics; empty when there are some
+  double driver_ms = 0;     ///< processor time of making the pipeline: another number on every run
 };
 
 /// The GPUs that the table shows: "navi21" (RDNA 2) and "gfx1100" (RDNA 3).

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 #include <map>
 
 #include "check/reflect.h"
@@ -291,6 +292,11 @@ void readDisassembly(const Device& device, const VkPipelineExecutableInfoKHR& in
   }
 }
 
+/// Of all threads of this process: the driver's, too.
+double processorMs() {
+  return 1000 * static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+}
+
 std::string textOf(const Diagnostics& diagnostics) {
   return diagnostics.empty() ? "" : diagnostics[0].message;
 }
@@ -305,7 +311,9 @@ Outcome compilePipeline(const Device& device, const Stages& subject, bool disass
   if (!vertex) return {{}, {}, textOf(vertex.error())};
 
   Pipeline pipeline(device, *vertex, *fragment);
+  const double begin = processorMs();
   const VkResult result = pipeline.create(*subject.vertex, *subject.fragment, disassembly);
+  outcome.driver_ms = processorMs() - begin;
   if (result != VK_SUCCESS || pipeline.handle() == VK_NULL_HANDLE) {
     outcome.problem = fmt::format("the driver refuses the shader (VkResult {})", static_cast<int>(result));
     return outcome;

@@ -47,6 +47,7 @@ struct Head {
   Kind kind = Kind::Outcome;
   uint32_t has_statistics = 0;
   uint32_t problem_size = 0, disassembly_size = 0;
+  double driver_ms = 0;
   Statistics statistics;
 };
 
@@ -68,6 +69,7 @@ bool send(int pipe, Kind kind, const Outcome& outcome) {
   head.has_statistics = outcome.statistics ? 1 : 0;
   head.problem_size = static_cast<uint32_t>(outcome.problem.size());
   head.disassembly_size = static_cast<uint32_t>(outcome.disassembly.size());
+  head.driver_ms = outcome.driver_ms;
   if (outcome.statistics) head.statistics = *outcome.statistics;
   return writeAll(pipe, &head, sizeof head) &&
          writeAll(pipe, outcome.problem.data(), outcome.problem.size()) &&
@@ -187,6 +189,7 @@ Read receive(int pipe, Kind& kind, Outcome& outcome, Clock::time_point end) {
   kind = head.kind;
   outcome.problem.resize(head.problem_size);
   outcome.disassembly.resize(head.disassembly_size);
+  outcome.driver_ms = head.driver_ms;
   if (head.has_statistics != 0) outcome.statistics = head.statistics;
   state = readAll(pipe, outcome.problem.data(), outcome.problem.size(), end);
   if (state == Read::Good) state = readAll(pipe, outcome.disassembly.data(), outcome.disassembly.size(), end);
