@@ -36,22 +36,36 @@ struct Instead {
   std::string_view value = {};
 };
 
-/// By a definition of the document; nothing for a node that the document does not define.
-std::optional<Instead> byDefinition(const Element& document, const Element& node) {
+/// By a definition, or by one that it inherits from; nothing where none has such an output.
+std::optional<Instead> byDefinition(const Element& document, const Element& nodedef, const Element& node,
+                                    size_t depth) {
+  const auto base = std::find_if(document.children.begin(), document.children.end(), [&](const Element& one) {
+    return one.category == "nodedef" && !nodedef.get("inherit").empty() &&
+           one.name() == nodedef.get("inherit");
+  });
+  const bool inherits = base != document.children.end() && depth < kDeepestInheritance;
+  for (const Element& port : nodedef.children) {
+    if (port.category != "output" || port.get("type") != node.get("type")) continue;
+    const std::string_view name = port.get("defaultinput");
+    const Element* in = node.child("input", name);
+    if (in == nullptr) in = nodedef.child("input", name);
+    if (in == nullptr && inherits) in = base->child("input", name);
+    return Instead{in, port.get("default")};
+  }
+  return inherits ? byDefinition(document, *base, node, depth + 1) : std::nullopt;
+}
+
+/// Nothing for a node that the document does not define.
+std::optional<Instead> byDefinitions(const Element& document, const Element& node) {
   for (const Element& nodedef : document.children) {
     if (nodedef.category != "nodedef" || nodedef.get("node") != node.category) continue;
-    for (const Element& port : nodedef.children) {
-      if (port.category != "output" || port.get("type") != node.get("type")) continue;
-      const std::string_view name = port.get("defaultinput");
-      const Element* own = node.child("input", name);
-      return Instead{own != nullptr ? own : nodedef.child("input", name), port.get("default")};
-    }
+    if (const std::optional<Instead> found = byDefinition(document, nodedef, node, 0)) return found;
   }
   return std::nullopt;
 }
 
 Instead insteadOf(const Element& document, const Element& node) {
-  if (const std::optional<Instead> own = byDefinition(document, node)) return *own;
+  if (const std::optional<Instead> own = byDefinitions(document, node)) return *own;
   const auto known = std::find_if(kOwnDefaults.begin(), kOwnDefaults.end(),
                                   [&](const OwnDefault& one) { return one.node == node.category; });
   if (known != kOwnDefaults.end()) return {node.child("input", known->input), known->value};

@@ -116,7 +116,10 @@ void Patterns::unknownNode(const Element& element) {
         element, "no-such-definition",
         fmt::format("no definition of {} has this type, version and these inputs", quote(element.category)),
         fmt::format("{}{} stands in {}:{}{}", quote(one.nodedef->name()), of.size() > 1 ? ", the first," : "",
-                    one.nodedef->place.file, one.nodedef->place.line, unlikeIn(element, *one.nodedef)));
+                    one.nodedef->place.file,
+                    one.nodedef->place.line > 0 ? std::to_string(one.nodedef->place.line)
+                                                : one.nodedef->place.pointer,
+                    unlikeIn(element, *one.nodedef)));
   }
   if (const auto only = of_targets_.find(withoutNamespace(element.category)); only != of_targets_.end())
     return error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),

@@ -61,7 +61,7 @@ void makeUnlit(Element& scope) {
     } else {
       inputs.push_back(connected("emission_color", beside("convert", "color3")));
     }
-    if (type == "color4") {
+    if (type == "color4" || type == "vector4") {
       Element& alpha = beside("extract", "float");
       alpha.children.push_back(
           {"input", {{"name", "index"}, {"type", "integer"}, {"value", "3"}}, {}, node.place});

@@ -192,8 +192,10 @@ bool ProceduralReader::node(const Json& json, const Path& path, const std::strin
   node.category = type->text();
   node.place = placeOf(path);
   node.set("name", name);
-  if (const Json* out = json::member(json, "type"); out != nullptr && out->is_string())
-    node.set("type", out->text());
+  for (const std::string_view key : {"type", "version"}) {
+    const Json* text = json::member(json, key);
+    if (text != nullptr && text->is_string()) node.set(key, text->text());
+  }
   return ports(json, "inputs", path, [&](const Json& one, const std::string& port_name, const Path& at) {
     return port(one, port_name, at, "input", node);
   });
