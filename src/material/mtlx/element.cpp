@@ -34,7 +34,8 @@ void Element::set(std::string_view attribute, std::string value) {
 const Element* Element::child(std::string_view of, std::string_view named) const {
   if (!sorted.empty() && sorted.size() == children.size()) {
     const auto nameOf = [&](uint32_t place) { return children[place].name(); };
-    for (auto at = std::ranges::lower_bound(sorted, named, {}, nameOf);
+    const auto before = [&](uint32_t place, std::string_view name) { return nameOf(place) < name; };
+    for (auto at = std::lower_bound(sorted.begin(), sorted.end(), named, before);
          at != sorted.end() && nameOf(*at) == named; ++at) {
       if (children[*at].category == of) return &children[*at];
     }
@@ -52,7 +53,8 @@ void Element::index() {
   if (children.size() >= kMany) {
     sorted.resize(children.size());
     std::iota(sorted.begin(), sorted.end(), 0U);
-    std::ranges::stable_sort(sorted, {}, [&](uint32_t place) { return children[place].name(); });
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](uint32_t a, uint32_t b) { return children[a].name() < children[b].name(); });
   }
   for (Element& child : children) child.index();
 }
