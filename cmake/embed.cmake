@@ -25,7 +25,7 @@ function(lacquer_embed_files target folders name names)
   set(output "${PROJECT_BINARY_DIR}/embedded_${name}.cpp")
   add_custom_command(
     OUTPUT "${output}"
-    COMMAND "${CMAKE_COMMAND}" "-DFILES=${files}" "-DNAME=${name}" "-DROOT=${PROJECT_SOURCE_DIR}" "-DNAMES=${names}" "-DOUTPUT=${output}"
+    COMMAND "${CMAKE_COMMAND}" "-DFILES=${files}" "-DNAME=${name}" "-DROOT=${PROJECT_SOURCE_DIR}" "-DNAMES=${names}" "-DOUTPUT=${output}" "-DWITHOUT_COMMENTS=${EMSCRIPTEN}"
             -P "${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake"
     DEPENDS ${files} "${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake"
     COMMENT "Embedding ${name}"
