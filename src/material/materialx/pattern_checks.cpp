@@ -1,4 +1,5 @@
 // What is wrong with a document before anything is computed: types that do not fit, definitions with flaws.
+// And what inputs are connected to.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -238,6 +239,32 @@ bool Patterns::hasType(const Element& element) {
   error(element, "wrong-type", fmt::format("there is no type {}", quote(type)),
         lang::didYouMean(type, kTypes, "MaterialX has " + listOf(kTypes)));
   return false;
+}
+
+const Element* Patterns::upstream(const Scope& scope, const Element& input) const {
+  const std::string_view name = input.get("nodename");
+  const auto it = scope.siblings_->find(name);
+  return name.empty() || it == scope.siblings_->end() ? nullptr : it->second;
+}
+
+const Element* Patterns::nodegraph(const Scope& scope, const Element& input) const {
+  const std::string* named = input.find("nodegraph");
+  if (named == nullptr) {
+    const Element* node = upstream(scope, input);
+    return node != nullptr && node->category == "nodegraph" ? node : nullptr;
+  }
+  if (const auto it = scope.siblings_->find(*named); it != scope.siblings_->end()) return it->second;
+  const auto it = nodegraphs_.find(*named);
+  return it == nodegraphs_.end() ? nullptr : it->second;
+}
+
+const std::vector<const Element*>& Patterns::inputElements(const Element& owner) {
+  const auto [it, fresh] = inputs_.try_emplace(&owner);
+  if (!fresh) return it->second;
+  for (const Element& child : owner.children) {
+    if (child.category == "input") it->second.push_back(&child);
+  }
+  return it->second;
 }
 
 }  // namespace lacquer::materialx

@@ -52,15 +52,6 @@ const Siblings& Patterns::siblingsOf(const Element& owner) {
   return it->second;
 }
 
-const std::vector<const Element*>& Patterns::inputElements(const Element& owner) {
-  const auto [it, fresh] = inputs_.try_emplace(&owner);
-  if (!fresh) return it->second;
-  for (const Element& child : owner.children) {
-    if (child.category == "input") it->second.push_back(&child);
-  }
-  return it->second;
-}
-
 const Element* Patterns::nodeOf(const Element& owner, std::string_view name) {
   const Siblings& siblings = siblingsOf(owner);
   const auto it = siblings.find(name);
@@ -458,23 +449,6 @@ std::optional<Patterns::Referred> Patterns::find(const Scope& scope, const Eleme
         fmt::format("{} is connected to {}, which is not there", quote(input.name()), quote(wanted)),
         suggest(wanted, *scope.owner_, isNodeElement));
   return std::nullopt;
-}
-
-const Element* Patterns::upstream(const Scope& scope, const Element& input) const {
-  const std::string_view name = input.get("nodename");
-  const auto it = scope.siblings_->find(name);
-  return name.empty() || it == scope.siblings_->end() ? nullptr : it->second;
-}
-
-const Element* Patterns::nodegraph(const Scope& scope, const Element& input) const {
-  const std::string* named = input.find("nodegraph");
-  if (named == nullptr) {
-    const Element* node = upstream(scope, input);
-    return node != nullptr && node->category == "nodegraph" ? node : nullptr;
-  }
-  if (const auto it = scope.siblings_->find(*named); it != scope.siblings_->end()) return it->second;
-  const auto it = nodegraphs_.find(*named);
-  return it == nodegraphs_.end() ? nullptr : it->second;
 }
 
 std::optional<Source> Patterns::insert(Scope& scope, Element element) {
