@@ -33,8 +33,8 @@ void Element::set(std::string_view attribute, std::string value) {
 
 const Element* Element::child(std::string_view of, std::string_view named) const {
   if (!sorted.empty() && sorted.size() == children.size()) {
-    const auto nameOf = [&](uint32_t place) { return children[place].name(); };
-    const auto before = [&](uint32_t place, std::string_view name) { return nameOf(place) < name; };
+    const auto nameOf = [&](uint32_t i) { return children[i].name(); };
+    const auto before = [&](uint32_t i, std::string_view wanted) { return nameOf(i) < wanted; };
     for (auto at = std::lower_bound(sorted.begin(), sorted.end(), named, before);
          at != sorted.end() && nameOf(*at) == named; ++at) {
       if (children[*at].category == of) return &children[*at];
