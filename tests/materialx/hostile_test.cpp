@@ -135,6 +135,22 @@ TEST(MaterialXHostile, portsWithoutEnd) {
   EXPECT_EQ(codesOf(inDocument(attributes + "/>")), "xml-too-many");
 }
 
+/// Disabled nodes of a name with many definitions, which are of other types: each gives 0, soon.
+TEST(MaterialXHostile, disabledNodesWithoutEnd) {
+  constexpr int kCount = 60'000;
+  std::string document, nodes;
+  for (int i = 0; i < kCount; ++i) {
+    document += fmt::format(
+        "<nodedef name=\"ND_{0}\" node=\"own\"><output name=\"out\" type=\"vector2\"/></nodedef>", i);
+    nodes += fmt::format(
+        "<own name=\"n{}\" type=\"float\"><input name=\"disable\" type=\"boolean\" value=\"true\"/></own>",
+        i);
+  }
+  EXPECT_EQ(codesOf(inDocument(document + "<nodegraph name=\"NG\">" + nodes +
+                               "<output name=\"out\" type=\"float\" nodename=\"n7\"/></nodegraph>")),
+            "");
+}
+
 /// Definitions of two of the one before each: the place is that of the node with which they are too many.
 TEST(MaterialXHostile, definitionsThatDouble) {
   std::string document =

@@ -19,12 +19,12 @@ namespace {
 /// How deep declarations may use each other: checking one checks what it uses first.
 constexpr size_t kLongestChain = 256;
 
-/// What says how a material becomes a graph.
+/// Whether declarations of that kind say how a material becomes a graph.
 bool isModel(DeclKind kind) {
   return kind == DeclKind::Part || kind == DeclKind::Profile || kind == DeclKind::Lod;
 }
 
-/// What a signature lacks. Others may read the rest of it meanwhile.
+/// Gives a signature its bodies. Other threads may read its parameters meanwhile.
 void complete(NodeDecl& signature, NodeDecl whole) {
   signature.body = std::move(whole.body);
   signature.variants = std::move(whole.variants);

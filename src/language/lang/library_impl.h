@@ -1,5 +1,5 @@
-// What the library keeps of its files and declarations: library.h's other half, for the files that implement
-// it.
+// The library's files and declarations, with what was found of them so far: for the files that implement
+// library.h.
 #pragma once
 
 #include <array>
@@ -94,7 +94,7 @@ public:
     return (entry->*decl).get();
   }
 
-  /// What is wrong with it is left aside. Null where there is none, or where it does not parse.
+  /// A declaration whatever errors it has. Null where there is none, or where it does not parse.
   template <class T>
   const T* written(DeclKind kind, std::string_view name, std::unique_ptr<T> Entry::*decl) {
     const std::lock_guard lock(mutex);

@@ -1,9 +1,13 @@
 // Nodes that a document disables: what stands in their place.
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "materialx/surface.h"
 #include "mtlx/values.h"
@@ -36,36 +40,63 @@ struct Instead {
   std::string_view value = {};
 };
 
-/// By a definition, or by one that it inherits from; nothing where none has such an output.
-std::optional<Instead> byDefinition(const Element& document, const Element& nodedef, const Element& node,
-                                    size_t depth) {
-  const auto base = std::find_if(document.children.begin(), document.children.end(), [&](const Element& one) {
-    return one.category == "nodedef" && !nodedef.get("inherit").empty() &&
-           one.name() == nodedef.get("inherit");
-  });
-  const bool inherits = base != document.children.end() && depth < kDeepestInheritance;
-  for (const Element& port : nodedef.children) {
-    if (port.category != "output" || port.get("type") != node.get("type")) continue;
-    const std::string_view name = port.get("defaultinput");
+/// The definitions of a document. They stay as they are while its nodes are replaced.
+class Nodedefs {
+public:
+  explicit Nodedefs(const Element& document) {
+    for (const Element& child : document.children) {
+      if (child.category != "nodedef") continue;
+      if (!child.name().empty()) by_name_.emplace(child.name(), &child);
+      by_node_[child.get("node")].push_back(&child);
+    }
+  }
+
+  /// Nothing for a node that the document does not define.
+  std::optional<Instead> of(const Element& node) {
+    const auto all = by_node_.find(node.category);
+    if (all == by_node_.end()) return std::nullopt;
+    const std::string type(node.get("type"));
+    const auto [known, fresh] = known_.try_emplace({node.category, type});
+    for (size_t i = 0; fresh && known->second.output == nullptr && i < all->second.size(); ++i)
+      known->second = {all->second[i], port(*all->second[i], [&](const Element& one) {
+                         return one.category == "output" && one.get("type") == type;
+                       })};
+    if (known->second.output == nullptr) return std::nullopt;
+    const std::string_view name = known->second.output->get("defaultinput");
     const Element* in = node.child("input", name);
-    if (in == nullptr) in = nodedef.child("input", name);
-    if (in == nullptr && inherits) in = base->child("input", name);
-    return Instead{in, port.get("default")};
+    if (in == nullptr)
+      in = port(*known->second.nodedef,
+                [&](const Element& one) { return one.category == "input" && one.name() == name; });
+    return Instead{in, known->second.output->get("default")};
   }
-  return inherits ? byDefinition(document, *base, node, depth + 1) : std::nullopt;
-}
 
-/// Nothing for a node that the document does not define.
-std::optional<Instead> byDefinitions(const Element& document, const Element& node) {
-  for (const Element& nodedef : document.children) {
-    if (nodedef.category != "nodedef" || nodedef.get("node") != node.category) continue;
-    if (const std::optional<Instead> found = byDefinition(document, nodedef, node, 0)) return found;
+private:
+  struct Known {
+    const Element* nodedef = nullptr;
+    const Element* output = nullptr;
+  };
+
+  /// A port of a definition or of one that it inherits from.
+  template <class Wanted>
+  const Element* port(const Element& nodedef, Wanted wanted) const {
+    const Element* at = &nodedef;
+    for (size_t depth = 0; at != nullptr && depth <= kDeepestInheritance; ++depth) {
+      const auto found = std::find_if(at->children.begin(), at->children.end(), wanted);
+      if (found != at->children.end()) return &*found;
+      const auto base = by_name_.find(at->get("inherit"));
+      at = base == by_name_.end() ? nullptr : base->second;
+    }
+    return nullptr;
   }
-  return std::nullopt;
-}
 
-Instead insteadOf(const Element& document, const Element& node) {
-  if (const std::optional<Instead> own = byDefinitions(document, node)) return *own;
+  // Looked up, never walked.
+  std::unordered_map<std::string_view, const Element*> by_name_;
+  std::unordered_map<std::string_view, std::vector<const Element*>> by_node_;
+  std::map<std::pair<std::string, std::string>, Known> known_;  ///< by the node's category and type
+};
+
+Instead insteadOf(Nodedefs& definitions, const Element& node) {
+  if (const std::optional<Instead> own = definitions.of(node)) return *own;
   const auto known = std::find_if(kOwnDefaults.begin(), kOwnDefaults.end(),
                                   [&](const OwnDefault& one) { return one.node == node.category; });
   if (known != kOwnDefaults.end()) return {node.child("input", known->input), known->value};
@@ -77,8 +108,8 @@ Instead insteadOf(const Element& document, const Element& node) {
 }
 
 /// A node that gives what is passed on, or a number: the definition's, or 0.
-void replace(const Element& document, Element& node) {
-  const Instead instead = insteadOf(document, node);
+void replace(Nodedefs& definitions, Element& node) {
+  const Instead instead = insteadOf(definitions, node);
   const ir::Type type = *typeOf(node.get("type"));
   const bool passes = instead.input != nullptr;
   Element port{"input", {}, {}, node.place};
@@ -105,8 +136,7 @@ void replace(const Element& document, Element& node) {
                 [](const auto& one) { return one.first == "nodedef" || one.first == "version"; });
 }
 
-/// Of `document` its definitions are looked at, which stay as they are.
-void within(const Element& document, Element& scope) {
+void within(Nodedefs& definitions, Element& scope) {
   for (Element& node : scope.children) {
     if (!isNodeElement(node)) continue;
     const auto disable = std::find_if(node.children.begin(), node.children.end(), [](const Element& one) {
@@ -118,16 +148,17 @@ void within(const Element& document, Element& scope) {
       continue;
     const bool disabled = disable->get("value") == "true";
     node.children.erase(disable);
-    if (disabled) replace(document, node);
+    if (disabled) replace(definitions, node);
   }
 }
 
 }  // namespace
 
 void takeDisabled(Element& document) {
-  within(document, document);
+  Nodedefs definitions(document);
+  within(definitions, document);
   for (Element& child : document.children)
-    if (child.category == "nodegraph") within(document, child);
+    if (child.category == "nodegraph") within(definitions, child);
 }
 
 }  // namespace lacquer::materialx
