@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr size_t kHeader = 48;
+constexpr size_t kHeader = 80;
 constexpr uint64_t kRoom = uint64_t{1} << 30;
 constexpr size_t kKey = 8;  ///< where the key begins in the header
 constexpr std::string_view kMaterial =
