@@ -10,6 +10,10 @@
 #include <optional>
 #include <stdexcept>
 
+namespace tinygltf {
+std::string base64_encode(const unsigned char* bytes, unsigned count);  // which its header has for itself
+}
+
 namespace renderer {
 
 namespace {
@@ -23,9 +27,8 @@ bool within(int index, const List& list) {
 }
 
 /// tinygltf 2.7 wants a node of every animated target, which a pointer (KHR_animation_pointer) has not.
-std::string withNodes(const std::string& text) {
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("animations") || !json["animations"].is_array()) return text;
+void giveNodes(nlohmann::json& json) {
+  if (!json.is_object() || !json.contains("animations") || !json["animations"].is_array()) return;
   for (nlohmann::json& animation : json["animations"]) {
     if (!animation.is_object() || !animation.contains("channels")) continue;
     for (nlohmann::json& channel : animation["channels"]) {
@@ -34,7 +37,45 @@ std::string withNodes(const std::string& text) {
         channel["target"]["node"] = 0;
     }
   }
-  return json.dump();
+}
+
+/// The JSON of a .gltf or a .glb of version 2 or 3, as tinygltf 2.7 reads it: buffers of chunks as data URIs.
+nlohmann::json jsonOf(const std::string& bytes) {
+  const auto number = [&](size_t at, size_t count) {
+    uint64_t value = 0;
+    std::memcpy(&value, bytes.data() + at, count);
+    return value;
+  };
+  if (bytes.size() < 12 || bytes.compare(0, 4, "glTF") != 0)
+    return nlohmann::json::parse(bytes, nullptr, false);
+  const bool wide = number(4, 4) == 3;
+  const size_t head = wide ? 16 : 8;
+  nlohmann::json json(nlohmann::json::value_t::discarded);
+  std::vector<std::string> chunks;
+  for (size_t at = wide ? 16 : 12; at < bytes.size() && bytes.size() - at >= head;) {
+    const uint64_t size = wide ? number(at + 8, 8) : number(at, 4);
+    if (size > bytes.size() - at - head) break;
+    const uint64_t type = number(wide ? at : at + 4, 4);
+    chunks.push_back(bytes.substr(at + head, static_cast<size_t>(size)));
+    if (type == 0x4E4F534A && json.is_discarded())
+      json = nlohmann::json::parse(chunks.back(), nullptr, false);
+    at += head + static_cast<size_t>(size);
+    if (wide) at = (at + 7) / 8 * 8;
+  }
+  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return json;
+  for (nlohmann::json& buffer : json["buffers"]) {
+    if (!buffer.is_object() || buffer.contains("uri")) continue;
+    const auto named = buffer.find("chunk");
+    const bool first = &buffer == &json["buffers"][0];
+    const size_t chunk = named == buffer.end()         ? (first ? 1 : 0)
+                         : named->is_number_unsigned() ? named->get<size_t>()
+                                                       : 0;
+    if (chunk == 0 || chunk >= chunks.size()) continue;
+    buffer["uri"] = "data:application/octet-stream;base64," +
+                    tinygltf::base64_encode(reinterpret_cast<const unsigned char*>(chunks[chunk].data()),
+                                            static_cast<unsigned>(chunks[chunk].size()));
+  }
+  return json;
 }
 
 void load(const std::string& path, tinygltf::Model& model) {
@@ -44,26 +85,11 @@ void load(const std::string& path, tinygltf::Model& model) {
   const std::string folder = path.find('/') == std::string::npos ? "." : path.substr(0, path.rfind('/'));
   tinygltf::TinyGLTF reader;
   std::string error, warning;
-  bool good = false;
-  uint32_t head[5]{};  // magic, version, length, the first chunk's length and type
-  if (bytes.size() >= sizeof head) std::memcpy(head, bytes.data(), sizeof head);
-  constexpr uint32_t kMagic = 0x46546C67;
-  if (head[0] == kMagic && head[3] <= bytes.size() - sizeof head) {
-    std::string json = withNodes(bytes.substr(sizeof head, head[3]));
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    const std::string rest = bytes.substr(sizeof head + head[3]);
-    head[3] = static_cast<uint32_t>(json.size());
-    head[2] = static_cast<uint32_t>(sizeof head + json.size() + rest.size());
-    std::string glb(sizeof head, '\0');
-    std::memcpy(glb.data(), head, sizeof head);
-    glb += json + rest;
-    good = reader.LoadBinaryFromMemory(&model, &error, &warning,
-                                       reinterpret_cast<const unsigned char*>(glb.data()), head[2], folder);
-  } else {
-    const std::string json = withNodes(bytes);
-    good = reader.LoadASCIIFromString(&model, &error, &warning, json.data(),
-                                      static_cast<unsigned>(json.size()), folder);
-  }
+  nlohmann::json json = jsonOf(bytes);
+  giveNodes(json);
+  const std::string text = json.is_discarded() ? bytes : json.dump();
+  const bool good = reader.LoadASCIIFromString(&model, &error, &warning, text.data(),
+                                               static_cast<unsigned>(text.size()), folder);
   if (!warning.empty()) complain(path + ": " + warning);
   if (!good) throw std::runtime_error(path + ": " + (error.empty() ? "this is no glTF file" : error));
 }

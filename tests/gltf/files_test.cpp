@@ -78,7 +78,7 @@ TEST(GltfContainer, chunksMustFit) {
       "x: error: the GLB's first chunk is not JSON [no-json-chunk]\n  help: the JSON chunk must come first");
   EXPECT_EQ(outcomeOf(header(1, 20) + word(0) + word(0)),
             "x: error: this is version 1 of the GLB container [unsupported-version]\n  help: Lacquer reads "
-            "version 2");
+            "versions 2 and 3");
   EXPECT_EQ(
       outcomeOf(glb("{]")),
       "x:1:2: error: not valid JSON: syntax error while parsing object key - unexpected ']'; expected string "

@@ -98,17 +98,20 @@ TEST(GltfLimits, rootMustBeAGltf) {
             "x:/asset: error: asset is a number [wrong-type]\n  help: it must be an object");
   EXPECT_EQ(
       failure(R"({"asset":{}})"),
-      "x:/asset: error: the asset has no \"version\" [missing-property]\n  help: Lacquer reads glTF 2.0");
+      "x:/asset: error: the asset has no \"version\" [missing-property]\n  help: Lacquer reads glTF 2.0 "
+      "and 2.1");
   EXPECT_EQ(
       failure(R"({"asset":{"version":"1.0"}})"),
-      "x:/asset/version: error: version is \"1.0\" [unsupported-version]\n  help: Lacquer reads glTF 2.0");
+      "x:/asset/version: error: version is \"1.0\" [unsupported-version]\n  help: Lacquer reads glTF 2.0 "
+      "and 2.1");
   EXPECT_EQ(failure(R"({"asset":{"version":2.0}})"),
             "x:/asset/version: error: version is a number [wrong-type]\n  help: it must be a string such as "
             "\"2.0\"");
-  EXPECT_EQ(failure(R"({"asset":{"version":"2.1","minVersion":"2.1"}})"),
-            "x:/asset/minVersion: error: minVersion is \"2.1\" [unsupported-version]\n  help: Lacquer reads "
-            "glTF 2.0");
-  EXPECT_EQ(failure(R"({"asset":{"version":"2.1"}})"), "read");
+  EXPECT_EQ(failure(R"({"asset":{"version":"2.2","minVersion":"2.2"}})"),
+            "x:/asset/minVersion: error: minVersion is \"2.2\" [unsupported-version]\n  help: Lacquer reads "
+            "glTF 2.0 and 2.1");
+  EXPECT_EQ(failure(R"({"asset":{"version":"2.1","minVersion":"2.1"}})"), "read");
+  EXPECT_EQ(failure(R"({"asset":{"version":"2.9"}})"), "read");
   EXPECT_EQ(failure(R"({"asset":{"version":"2.0"},"materials":{}})"),
             "x:/materials: error: materials is an object [wrong-type]\n  help: it must be an array");
 }

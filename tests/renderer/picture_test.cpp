@@ -200,6 +200,31 @@ TEST_F(Pictures, BrokenFilesAreToldOf) {
   EXPECT_NE(made.said.find("none.bin"), std::string::npos) << made.said;
 }
 
+/// The container of glTF 2.1: lengths of 64 bits, the JSON behind the buffer, which names its chunk.
+TEST_F(Pictures, AGlbOfVersionThreeDrawsTheSame) {
+  const std::string bytes = bytesOf(kStillLife);
+  uint32_t size = 0;
+  std::memcpy(&size, bytes.data() + 12, 4);
+  Json json = Json::parse(bytes.substr(20, size));
+  json["asset"] = {{"version", "2.1"}, {"minVersion", "2.1"}};
+  json["buffers"][0]["chunk"] = 1;
+  std::string chunks;
+  const auto add = [&](const char* type, const std::string& data) {
+    chunks.resize((chunks.size() + 7) / 8 * 8);
+    const uint64_t length = data.size();
+    chunks += std::string(type, 4) + std::string(4, '\0') +
+              std::string(reinterpret_cast<const char*>(&length), sizeof length) + data;
+  };
+  add("mine", "12345");
+  add("BIN", bytes.substr(20 + size + 8));
+  add("JSON", json.dump());
+  const uint64_t head[2] = {uint64_t{3} << 32 | 0x46546C67, sizeof head + chunks.size()};
+  const fs::path path = place() / "three.glb";
+  std::ofstream(path, std::ios::binary)
+      << std::string(reinterpret_cast<const char*>(head), sizeof head) << chunks;
+  EXPECT_EQ(differing(draw(kStillLife, with({})), draw(path, with({})), 0), 0U);
+}
+
 TEST_F(Pictures, WrongWordsAreToldOf) {
   const std::string scene = kStillLife.string();
   EXPECT_EQ(run({}).status, 1);

@@ -9,8 +9,10 @@ export interface GltfFile {
   name: string;
   bytes: Uint8Array;
   json: any;
-  /** The binary chunk of a .glb. */
+  /** The binary chunk of a .glb that its first buffer is where it names none. */
   binary: Uint8Array | null;
+  /** All chunks of a .glb; null for those that are no buffers. */
+  chunks?: (Uint8Array | null)[];
   /** What the JSON names, by its URI or its name. */
   resources: Map<string, Uint8Array>;
 }
@@ -53,18 +55,24 @@ export function openGltf(name: string, bytes: Uint8Array, resources = new Map<st
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (bytes.length < 20 || view.getUint32(0, true) !== 0x46546c67)
     return { name, bytes, json: objectFrom(bytes), binary: null, resources };
+  // Version 3, of glTF 2.1: lengths of 64 bits, behind a chunk's type and encoding.
+  const wide = view.getUint32(4, true) === 3;
+  const head = wide ? 16 : 8;
   let json: any = null;
-  let binary: Uint8Array | null = null;
-  for (let at = 12; at + 8 <= bytes.length; ) {
-    const size = view.getUint32(at, true);
-    const chunk = bytes.subarray(at + 8, at + 8 + size);
-    const kind = view.getUint32(at + 4, true);
-    if (kind === 0x4e4f534a && json === null) json = objectFrom(chunk);
-    if (kind === 0x004e4942 && binary === null) binary = chunk;
-    at += 8 + size;
+  const chunks: (Uint8Array | null)[] = [];
+  for (let at = wide ? 16 : 12; at + head <= bytes.length; ) {
+    const size = wide ? Number(view.getBigUint64(at + 8, true)) : view.getUint32(at, true);
+    const chunk = bytes.subarray(at + head, at + head + size);
+    const kind = view.getUint32(wide ? at : at + 4, true);
+    const plain = !wide || view.getUint32(at + 4, true) === 0;
+    if (kind === 0x4e4f534a && json === null && plain) json = objectFrom(chunk);
+    chunks.push(kind === 0x004e4942 && plain ? chunk : null);
+    at += head + size;
+    if (wide) at = Math.ceil(at / 8) * 8;
   }
   if (json === null) throw new Error('the file has no JSON');
-  return { name, bytes, json, binary, resources };
+  const binary = wide ? chunks[1] : chunks.find((chunk) => chunk !== null);
+  return { name, bytes, json, binary: binary ?? null, chunks, resources };
 }
 
 /** How far fetchGltf() goes for a file that anyone may have written. */
@@ -185,7 +193,8 @@ export function bufferView(file: GltfFile, index: number): Uint8Array | null {
   const view = item(file.json.bufferViews, index);
   const buffer = item(file.json.buffers, view?.buffer);
   if (!buffer) return null;
-  const bytes = typeof buffer.uri === 'string' ? resource(file, buffer.uri) : file.binary;
+  const bytes = typeof buffer.uri === 'string' ? resource(file, buffer.uri)
+    : buffer.chunk === undefined ? file.binary : item(file.chunks, buffer.chunk);
   const from = view.byteOffset ?? 0;
   if (!bytes || !isCount(from) || !isCount(view.byteLength) || from + view.byteLength > bytes.length) return null;
   return bytes.subarray(from, from + view.byteLength);

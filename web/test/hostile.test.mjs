@@ -302,3 +302,31 @@ test('a pointer leads to what the file has itself, and to nothing that all objec
     pbrMetallicRoughness: { baseColorFactor: [1, 0.75, 0.25, 1] }, extensions: { KHR_materials_coat: { coatFactor: 0.5 } },
   });
 });
+
+test('a .glb of version 3 has buffers in the chunks that they name', () => {
+  const number = (value, bytes) => {
+    const made = Buffer.alloc(bytes);
+    bytes === 8 ? made.writeBigUInt64LE(BigInt(value)) : made.writeUInt32LE(value);
+    return made;
+  };
+  const glb3 = (...chunks) => {
+    let all = Buffer.alloc(0);
+    for (const [type, data] of chunks) {
+      all = Buffer.concat([all, Buffer.alloc((8 - (all.length % 8)) % 8)]);
+      all = Buffer.concat([all, Buffer.from(type.padEnd(4, '\0')), number(0, 4), number(data.length, 8), Buffer.from(data)]);
+    }
+    return Buffer.concat([Buffer.from('glTF'), number(3, 4), number(16 + all.length, 8), all]);
+  };
+  const json = (...buffers) => JSON.stringify({
+    asset: { version: '2.1' }, buffers, bufferViews: buffers.map((_, buffer) => ({ buffer, byteOffset: 1, byteLength: 2 })),
+  });
+  const text = (file, index) => {
+    const bytes = bufferView(file, index);
+    return bytes && Buffer.from(bytes).toString();
+  };
+  const named = openGltf('a.glb', glb3(['mine', '12345'], ['BIN', 'abcd'], ['JSON', json({ chunk: 1 }, { chunk: 3 }, { chunk: 0 }, {})], ['BIN', 'efgh']));
+  assert.deepEqual([0, 1, 2].map((i) => text(named, i)), ['bc', 'fg', null]);
+  assert.equal(text(openGltf('a.glb', glb3(['JSON', json({})], ['BIN', 'abcd'])), 0), 'bc');
+  assert.throws(() => openGltf('a.glb', glb3(['BIN', 'abcd'])), /no JSON/);
+  for (let size = 0; size < 40; ++size) assert.throws(() => openGltf('a.glb', glb3(['JSON', json({})]).subarray(0, size)));
+});

@@ -6,6 +6,7 @@
 
 #include "gltf/reading.h"
 #include "gltf/scene.h"
+#include "gltf/version.h"
 #include "json/path.h"
 #include "json/report.h"
 #include "support/letters.h"
@@ -33,8 +34,10 @@ public:
     const Json* variants = extensionOf(root, kVariants);
     reading_.variants = variants == nullptr ? 0 : arraySize(*variants, "variants");
     const Json* used = member(root, "extensionsUsed");
-    reading_.quantized = used != nullptr && used->is_array() &&
-                         std::find(used->begin(), used->end(), kQuantization) != used->end();
+    // A part of glTF itself from 2.1 on.
+    reading_.quantized =
+        isOfVersion(root, 1) || (used != nullptr && used->is_array() &&
+                                 std::find(used->begin(), used->end(), kQuantization) != used->end());
   }
 
   Json check() {
@@ -55,6 +58,7 @@ private:
   void rootExtensions(const Json& extensions, const Path& path);
   Json light(const Json& light, const Path& path);
   void image(const Json& image, const Path& path);
+  void externalAsset(const Json& asset, const Path& path);
   Json node(const Json& node, const Path& path);
 
   const Json& root_;
@@ -84,6 +88,9 @@ void SceneChecker::section(std::string_view name, const Json& value) {
     out_["nodes"] = elements(value, path, "node", [&](const Json& n, const Path& p) { return node(n, p); });
   } else if (name == "images") {
     eachElement(report_, value, path, "image", [&](const Json& i, const Path& p, size_t) { image(i, p); });
+  } else if (name == "externalAssets" && isOfVersion(root_, 1)) {
+    eachElement(report_, value, path, "external asset",
+                [&](const Json& e, const Path& p, size_t) { externalAsset(e, p); });
   }
 }
 
@@ -165,6 +172,26 @@ void SceneChecker::image(const Json& image, const Path& path) {
                   "buffer view", out.bufferView);
   }
   reading_.scene.images.push_back(std::move(out));
+}
+
+/// The materials of another file are that file's.
+/// source: the draft of glTF 2.1, "Referencing external assets"
+void SceneChecker::externalAsset(const Json& asset, const Path& path) {
+  const Json* number = member(asset, "file");
+  if (number == nullptr && !isStandIn(asset)) {
+    report_.error("missing-property", path, "the external asset has no \"file\"", "it must name a file");
+  }
+  int index = -1;
+  const Path here(path, "file");
+  if (number == nullptr || !report_.index(here, "file", *number, arraySize(root_, "files"), "file", index))
+    return;
+  const Json& file = root_["files"][static_cast<size_t>(index)];
+  const Json* uri = file.is_object() ? member(file, "uri") : nullptr;
+  const bool named = uri != nullptr && uri->is_string() && !isDataUri(uri->text());
+  report_.note("external-asset", here,
+               named ? fmt::format("nodes show what {} holds", quote(uri->text()))
+                     : fmt::format("nodes show what file {} holds", index),
+               "shaders for its materials are generated from that file");
 }
 
 Json SceneChecker::node(const Json& node, const Path& path) {

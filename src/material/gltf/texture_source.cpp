@@ -21,18 +21,6 @@ namespace lacquer::gltf {
 
 namespace {
 
-constexpr uint32_t kBinaryChunk = 0x004E4942;  // "BIN\0"
-
-/// The binary chunk of a GLB that jsonText() has accepted; empty when there is none.
-std::string binaryChunk(std::string_view bytes) {
-  if (!bytes.starts_with("glTF")) return {};
-  const std::string_view glb = bytes.substr(0, word(bytes, 8));
-  for (size_t at = 12; at + 8 <= glb.size(); at += 8 + word(glb, at)) {
-    if (word(glb, at + 4) == kBinaryChunk) return std::string(glb.substr(at + 8, word(glb, at)));
-  }
-  return {};
-}
-
 std::optional<std::string> fromBase64(std::string_view text) {
   std::string bytes;
   uint32_t bits = 0;
@@ -110,10 +98,17 @@ Result<TextureFile> TextureFile::fromMemory(std::string_view bytes, const std::s
   Result<Json> root = parseJson(*text, name, access.limits);
   if (!root) return tl::make_unexpected(std::move(root.error()));
   TextureFile file;
+  if (isGlb(bytes)) {
+    const Result<Container> container = containerOf(bytes, name);
+    file.glb_version_ = container->version;
+    for (const Chunk& chunk : container->chunks) {
+      const bool buffer = chunk.kind == Chunk::Kind::Binary && chunk.encoding == 0;
+      file.chunks_.push_back(buffer ? std::make_shared<const std::string>(chunk.data) : nullptr);
+    }
+  }
   file.path_ = name;
   file.access_ = access;
   file.in_memory_ = true;
-  file.binary_ = std::make_shared<const std::string>(binaryChunk(bytes));
   file.root_ = std::move(*root);
   return file;
 }
@@ -165,10 +160,7 @@ Result<std::shared_ptr<const std::string>> TextureFile::bufferBytes(size_t index
   const Json* buffer = element(root_, "buffers", index);
   if (buffer == nullptr) return fail("image-missing", place, fmt::format("there is no buffer {}", index));
   const Json* uri = member(*buffer, "uri");
-  if (uri == nullptr) {
-    static const auto kEmpty = std::make_shared<const std::string>();
-    return index == 0 ? binary_ : kEmpty;
-  }
+  if (uri == nullptr) return chunkBytes(*buffer, index, place);
   if (!uri->is_string()) return fail("image-missing", place, "the buffer's uri is no string");
   // Buffers may name one file, again and again, and images lie in one buffer.
   const auto [known, fresh] =
@@ -183,6 +175,26 @@ Result<std::shared_ptr<const std::string>> TextureFile::bufferBytes(size_t index
   }
   held_ += bytes->size();
   return known->second = std::make_shared<const std::string>(std::move(*bytes));
+}
+
+Result<std::shared_ptr<const std::string>> TextureFile::chunkBytes(const Json& buffer, size_t index,
+                                                                   const Place& place) const {
+  static const auto kEmpty = std::make_shared<const std::string>();
+  if (member(buffer, "chunk") != nullptr) {
+    const std::optional<size_t> chunk = wholeMember(buffer, "chunk");
+    if (chunk && *chunk < chunks_.size() && chunks_[*chunk] != nullptr) return chunks_[*chunk];
+    return fail("image-missing", place,
+                fmt::format("buffer {} names a chunk that is no binary one of the file", index),
+                chunks_.empty() ? "chunks are a GLB's"
+                                : fmt::format("the GLB has {}, and the first has the number 0",
+                                              countOf(chunks_.size(), "chunk")));
+  }
+  if (index != 0) return kEmpty;
+  // Version 2 has one binary chunk, wherever it is; in version 3 what goes without saying is chunk 1.
+  if (glb_version_ == 3) return chunks_.size() > 1 && chunks_[1] != nullptr ? chunks_[1] : kEmpty;
+  const auto first =
+      std::find_if(chunks_.begin(), chunks_.end(), [](const auto& one) { return one != nullptr; });
+  return first == chunks_.end() ? kEmpty : *first;
 }
 
 Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) const {

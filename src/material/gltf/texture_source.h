@@ -31,7 +31,7 @@ struct TextureAccess {
   std::vector<std::string> allow;  ///< folders beside the file's own
 };
 
-/// A file's JSON and its binary chunk, opened to look for textures.
+/// A file's JSON and its binary chunks, opened to look for textures.
 class TextureFile {
 public:
   /// Reads a .gltf or .glb.
@@ -61,9 +61,9 @@ public:
   /// The bytes behind an object with a `uri` or a `bufferView`. Errors: those of image().
   Result<std::string> bytesOf(const Json& owner, const Place& place) const;
 
-  /// A whole buffer: a file, a data URI or the GLB's own chunk, which only the first buffer may be. Errors:
-  /// those of image(), and "image-missing" where the buffers are together larger than a file may be. Each is
-  /// read once, and held.
+  /// A whole buffer: a file, a data URI or a chunk of the GLB, the one that it names, or for the first buffer
+  /// the one that need not be named. Errors: those of image(), and "image-missing" where the buffers are
+  /// together larger than a file may be. Each is read once, and held.
   Result<std::shared_ptr<const std::string>> bufferBytes(size_t index, const Place& place) const;
   /// The file's JSON, which nobody has checked.
   const Json& root() const { return root_; }
@@ -74,9 +74,13 @@ public:
 private:
   Result<std::string> uriBytes(const std::string& uri, const Place& place) const;
   Result<std::string> viewBytes(size_t index, const Place& place) const;
+  /// Of a buffer without a `uri`.
+  Result<std::shared_ptr<const std::string>> chunkBytes(const Json& buffer, size_t index,
+                                                        const Place& place) const;
 
   std::string path_;
-  std::shared_ptr<const std::string> binary_;
+  std::vector<std::shared_ptr<const std::string>> chunks_;  ///< of a GLB; nullptr for those of other types
+  uint32_t glb_version_ = 2;
   TextureAccess access_;
   bool in_memory_ = false;
   mutable std::vector<std::string> read_;

@@ -10,6 +10,7 @@
 
 #include "gltf/container.h"
 #include "gltf/scene.h"
+#include "gltf/version.h"
 #include "json/doubles.h"
 #include "json/json.h"
 #include "json/path.h"
@@ -29,28 +30,14 @@ using json::Report;
 
 namespace {
 
-/// The two numbers of "2.0"; nothing when it is no version.
-std::optional<std::pair<int, int>> versionOf(const std::string& text) {
-  constexpr size_t kLongest = 9;  // digits of "1234.5678" at most: no overflow to care for
-  const size_t dot = text.find('.');
-  const auto digits = [](const std::string& s) {
-    return !s.empty() && s.find_first_not_of("0123456789") == std::string::npos;
-  };
-  if (text.size() > kLongest || dot == std::string::npos) return std::nullopt;
-  const std::string major = text.substr(0, dot);
-  const std::string minor = text.substr(dot + 1);
-  if (!digits(major) || !digits(minor)) return std::nullopt;
-  return std::pair(std::stoi(major), std::stoi(minor));
-}
-
 /// Checks one of the asset's two versions. `newest` is the newest minor version that can be read.
 void checkVersion(const Json& version, std::string_view name, int newest, const Path& path, Report& report) {
   if (!version.is_string()) return report.wrongType(path, name, version, "a string such as \"2.0\"");
   const auto& text = version.text();
-  const std::optional<std::pair<int, int>> number = versionOf(text);
+  const std::optional<std::pair<int, int>> number = gltf::versionOf(text);
   if (number && number->first == 2 && number->second <= newest) return;
   report.error("unsupported-version", path, fmt::format("{} is {}", name, quote(text)),
-               "Lacquer reads glTF 2.0");
+               "Lacquer reads glTF 2.0 and 2.1");
 }
 
 /// What makes the file as a whole unusable.
@@ -68,10 +55,11 @@ void checkRoot(const Json& root, Report& report) {
     // Any 2.x can be read as a 2.0, unless it says otherwise in minVersion.
     checkVersion(*version, "version", 9999, Path(assetPath, "version"), report);
   } else {
-    report.error("missing-property", assetPath, "the asset has no \"version\"", "Lacquer reads glTF 2.0");
+    report.error("missing-property", assetPath, "the asset has no \"version\"",
+                 "Lacquer reads glTF 2.0 and 2.1");
   }
   if (const Json* least = json::member(*asset, "minVersion")) {
-    checkVersion(*least, "minVersion", 0, Path(assetPath, "minVersion"), report);
+    checkVersion(*least, "minVersion", 1, Path(assetPath, "minVersion"), report);
   }
   if (const Json* materials = json::member(root, "materials");
       materials != nullptr && !materials->is_array()) {
@@ -227,7 +215,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   // What is called a document, and is neither JSON nor a GLB, is one that does not begin as it should.
   const size_t start = bytes.find_first_not_of(" \t\r\n");
   const bool named = name.ends_with(".mtlx") && start != std::string_view::npos && bytes[start] != '{' &&
-                     !bytes.starts_with("glTF");
+                     !gltf::isGlb(bytes);
   if (materialx::isXml(bytes) || named) return readMaterialX(bytes, name, schema, options);
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
