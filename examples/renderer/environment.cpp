@@ -1,5 +1,7 @@
 #include "environment.h"
 
+#include "renderer.h"
+
 #include <lacquer/tools.h>
 
 #include <algorithm>
@@ -93,13 +95,28 @@ Environment readEnvironment(Device& device, const std::string& folder) {
     throw std::runtime_error(folder + " is no environment");
   Environment made;
   made.max_lod = json.value("environment_max_lod", 0.0F);
+  if (json.contains("box")) {
+    using Corner = std::array<float, 3>;
+    made.box = {json["box"].at("min").get<Corner>(), json["box"].at("max").get<Corner>()};
+  }
   for (const auto& [name, texture] : json["textures"].items())
     made.maps[name] = readKtx2(device, fs::path(folder) / texture.at("file").get<std::string>());
   return made;
 }
 
-std::string environmentOf(const std::string& picture, const std::string& cache) {
+std::string environmentOf(const std::string& picture, const std::string& scene, const std::string& cache) {
   fs::create_directories(cache);
+  lacquer::Environment how;
+  how.size = 128;
+  how.samples = 256;
+  lacquer::Messages messages;
+  if (picture.empty()) {
+    // It may name files that change while it does not: it is filtered anew.
+    how.output = (fs::path(cache) / "environment-scene").string();
+    if (lacquer::writeEnvironment(how, scene, {}, messages)) return how.output;
+    if (!messages.empty() && messages.back().code != "no-environment") complain(messages.back().text);
+    messages.clear();
+  }
   uint64_t hash = 14695981039346656037U;  // FNV-1a: tells pictures apart that nobody made to collide
   if (!picture.empty()) {
     for (const char c : bytesOf(picture)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
@@ -108,11 +125,7 @@ std::string environmentOf(const std::string& picture, const std::string& cache) 
   if (fs::exists(folder / "environment.json")) return folder.string();
   const fs::path studio = fs::path(cache) / "studio.hdr";
   if (picture.empty()) writeStudio(studio);
-  lacquer::Environment how;
   how.output = folder.string();
-  how.size = 128;
-  how.samples = 256;
-  lacquer::Messages messages;
   if (lacquer::writeEnvironment(how, picture.empty() ? studio.string() : picture, {}, messages))
     return folder.string();
   throw std::runtime_error(messages.empty() ? "the environment cannot be made" : messages.back().text);

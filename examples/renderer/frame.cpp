@@ -140,6 +140,10 @@ void Renderer::fillFrame(Stage& stage, const View& view, const Matrix& view_proj
     bytes.set("camera_position", axis(view.node, 3));
     bytes.set("environment_intensity", 1.0F);
     bytes.set("environment_max_lod", environment_.max_lod);
+    if (block.name == "EnvironmentBox") {
+      bytes.set("box_min", (*environment_.box)[0]);
+      bytes.set("box_max", (*environment_.box)[1]);
+    }
     bytes.set("light_count", static_cast<int32_t>(std::min<size_t>(lights, 16)));
     bytes.set("least_alpha", 0.5F);
     bytes.set("ahead", axis(view.node, 2) * -1);

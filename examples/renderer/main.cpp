@@ -23,8 +23,8 @@ constexpr const char* kUsage =
     "usage: renderer SCENE.glb|.gltf -o PICTURE.png|.pfm [options]\n"
     "  --size WIDTHxHEIGHT    of the picture, 960x540\n"
     "  --samples N            a row of so many samples each way for a pixel, 1 to 8; 2\n"
-    "  --environment SKY.hdr  an equirectangular picture, or a folder of `lacquer environment`; a plain "
-    "studio\n"
+    "  --environment SKY.hdr  what `lacquer environment` reads, or a folder that it wrote; the scene's own, or "
+    "a plain studio\n"
     "  --time SECONDS         of the file's animations, and of materials that ask for the time; 24 pictures "
     "a second\n"
     "  --camera N             of the scene's cameras, from 0; one that sees everything where there is none\n"
@@ -152,7 +152,8 @@ int main(int argc, char** argv) {
     Arguments with = argumentsOf(argc, argv);
     const bool folder = std::filesystem::is_directory(with.environment);
     with.settings.environment =
-        folder ? with.environment : renderer::environmentOf(with.environment, with.settings.cache);
+        folder ? with.environment
+               : renderer::environmentOf(with.environment, with.scene, with.settings.cache);
     renderer::Device device;
     renderer::Renderer renderer(device, with.scene, with.settings);
     const std::vector<float> samples = renderer.draw(with.seconds);

@@ -74,6 +74,7 @@ Renderer::Renderer(Device& device, const std::string& file, const Settings& sett
   const lacquer::Scene materials = lacquer::Scene::load(file, {}, messages);
   for (const lacquer::Message& message : messages) complain(message.text);
   if (!materials) throw std::runtime_error("the materials cannot be read");
+  environment_ = readEnvironment(device, settings.environment);
   // Lights that have an area come in no lists, and cast no shadows.
   const char* const lit = scene_.hasAreas() ? "forward_area" : "forward_clustered";
   makeStage(color_, materials, settings.shown.empty() ? lit : settings.shown);
@@ -90,7 +91,6 @@ Renderer::Renderer(Device& device, const std::string& file, const Settings& sett
   for (Stage* stage : {&color_, &shadow_, &depth_, &sky_}) makeLayouts(*stage);
   meshes_ = scene_.meshes(color_.contract);
   meshes_.push_back(triangleOverAll());
-  environment_ = readEnvironment(device, settings.environment);
   const uint32_t width = settings.width, height = settings.height;
   if (std::max(width, height) > device.largestImage()) throw std::runtime_error("the picture is too large");
   target_ = device.image(kFloats, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | kCopied);
@@ -110,6 +110,7 @@ void Renderer::makeStage(Stage& stage, const lacquer::Scene& materials, const st
   options.programs = settings_.programs;
   options.programs_model = true;
   if (name == "forward_clustered") options.switches["light_shadows"] = true;
+  if (name.starts_with("forward") && environment_.box) options.switches["local_environment"] = true;
   lacquer::Messages messages;
   stage.contract = lacquer::contract(materials, {}, options, messages);
   for (const lacquer::Message& message : messages) {

@@ -221,12 +221,18 @@ struct EnvironmentTexture {
   uint32_t size = 0;   ///< texels of an edge
   uint32_t levels = 1;
 };
+/// Where the surroundings of a room end, in metres of the world.
+struct EnvironmentBox {
+  std::array<double, 3> min{}, max{};
+};
 /// The files that were written.
 struct EnvironmentMaps {
   std::string output;  ///< the folder
   std::vector<EnvironmentTexture> textures;
   uint32_t max_lod = 0;                                         ///< the value of environment_max_lod
   std::array<std::array<double, 3>, 9> irradiance_harmonics{};  ///< coefficients of the irradiance
+  /// Of a glTF file's environment: for EnvironmentBox of the switch local_environment.
+  std::optional<EnvironmentBox> box = {};
 };
 /// The same in memory.
 struct EnvironmentFiles {

@@ -207,11 +207,13 @@ struct Environment {
   uint32_t samples = 1024;  ///< about how many parts of the picture each texel is made of, from 64 to 65536
   bool dds = false;         ///< files are .dds; else .ktx2
   bool shared_exponents = false;  ///< texels of cubes are RGB9E5; else half floats
+  int scene = -1;                 ///< of a glTF file; -1 for the one that it names
 };
-/// Reads an equirectangular picture, Radiance HDR or OpenEXR, and writes the cube maps and tables that
-/// templates read (environment_specular, environment_charlie, environment_irradiance, environment_dfg,
-/// environment_sheen) and environment.json, which names them. Nothing on an error: "environment-unreadable",
-/// "image-too-large" and the like. Uses threads.
+/// Reads a picture of the surroundings and writes the cube maps and tables that templates read
+/// (environment_specular, environment_charlie, environment_irradiance, environment_dfg, environment_sheen) and
+/// environment.json, which names them. The picture is equirectangular, Radiance HDR or OpenEXR, a cube map in
+/// a KTX2 file, or the environment of a glTF file's scene (KHR_lights_environment). Nothing on an error:
+/// "environment-unreadable", "image-too-large", "no-environment" and the like. Uses threads.
 std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, const std::string& picture,
                                                 const Options& options, Messages& messages,
                                                 const Progress& progress = {});

@@ -6,7 +6,7 @@
 #include "check/check.h"
 #include "check/reflect.h"
 #include "cost/cost.h"
-#include "environment/panorama.h"
+#include "environment/surroundings.h"
 #include "eval/image.h"
 #include "eval/point_arrays.h"
 #include "eval/points_file.h"
@@ -70,12 +70,21 @@ std::string feedImage(std::string_view bytes) {
 
 std::string feedPanorama(std::string_view bytes) {
   Diagnostics warnings;
-  const Result<environment::Panorama> panorama =
-      environment::readPanorama(bytes, kMostPixels, {"fuzz.hdr", 0, 0, {}}, warnings);
-  if (!panorama) return panorama.error().empty() ? "a picture is refused without an error" : "";
-  if (panorama->texels.size() > kMostPixels) return "a picture is larger than it may be";
-  if (panorama->texels.size() != size_t{panorama->width} * panorama->height) return "pixels are missing";
-  for (const environment::Rgb& color : panorama->texels) {
+  Limits limits;
+  limits.image = kMostPixels;
+  // A text is the JSON of a .gltf.
+  const std::string name = bytes.starts_with('{') ? "fuzz.gltf" : "fuzz.hdr";
+  const Result<environment::Surroundings> surroundings =
+      environment::readSurroundings(bytes, name, true, {limits, {}, -1}, warnings);
+  if (!surroundings) return surroundings.error().empty() ? "a picture is refused without an error" : "";
+  const auto* panorama = std::get_if<environment::Panorama>(&surroundings->picture);
+  const auto* cube = std::get_if<texture::CubeLevel>(&surroundings->picture);
+  const auto& texels = panorama != nullptr ? panorama->texels : cube->texels;
+  if (texels.size() > kMostPixels) return "a picture is larger than it may be";
+  const size_t pixels = panorama != nullptr ? size_t{panorama->width} * panorama->height
+                                            : size_t{6} * cube->size * cube->size;
+  if (texels.size() != pixels) return "pixels are missing";
+  for (const environment::Rgb& color : texels) {
     for (const float x : color) {
       if (!(x >= 0 && x <= 65408)) return "radiance is not finite, or negative";
     }

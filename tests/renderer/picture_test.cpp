@@ -1,6 +1,7 @@
 // Whole pictures: what must be equal in them, and what is said of files that are broken.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -223,6 +224,59 @@ TEST_F(Pictures, AGlbOfVersionThreeDrawsTheSame) {
   std::ofstream(path, std::ios::binary)
       << std::string(reinterpret_cast<const char*>(head), sizeof head) << chunks;
   EXPECT_EQ(differing(draw(kStillLife, with({})), draw(path, with({})), 0), 0U);
+}
+
+/// A cube map of one colour to a face in a KTX2 file of floats, as a data URI.
+std::string cubeOf(const std::array<std::array<float, 3>, 6>& faces) {
+  const auto word = [](uint64_t value, size_t count) {
+    return std::string(reinterpret_cast<const char*>(&value), count);
+  };
+  std::string file("\xABKTX 20\xBB\r\n\x1A\n", 12);
+  for (const uint32_t field : {106U, 4U, 8U, 8U, 0U, 0U, 6U, 1U, 0U, 0U, 0U, 0U, 0U}) file += word(field, 4);
+  constexpr size_t kTexels = 64, kBytes = 6 * kTexels * 12;
+  file += std::string(16, '\0') + word(104, 8) + word(kBytes, 8) + word(kBytes, 8);
+  for (const auto& color : faces) {
+    for (size_t i = 0; i < kTexels; ++i) file.append(reinterpret_cast<const char*>(color.data()), 12);
+  }
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text = "data:image/ktx2;base64,";
+  file.resize((file.size() + 2) / 3 * 3);
+  for (size_t i = 0; i < file.size(); i += 3) {
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k) bits = bits << 8 | static_cast<unsigned char>(file[i + k]);
+    for (size_t k = 0; k < 4; ++k) text += kDigits[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+/// The model in surroundings of its own.
+fs::path surrounded(const char* name, const std::array<std::array<float, 3>, 6>& faces, bool box) {
+  return changed(name, [&](Json& j) {
+    Json light = {{"cubemap", 0}};
+    if (box) light.update({{"boundingBoxMin", {-3, -3, -3}}, {"boundingBoxMax", {3, 3, 3}}});
+    j["extensions"]["KHR_lights_environment"] = {{"images", {{{"uri", cubeOf(faces)}}}},
+                                                 {"cubemaps", {{{"source", 0}, {"intensity", 2}}}},
+                                                 {"lights", {light}}};
+    j["scenes"][0]["extensions"]["KHR_lights_environment"]["light"] = 0;
+  });
+}
+
+TEST_F(Pictures, TheScenesOwnEnvironmentLightsIt) {
+  const std::array<float, 3> quarter = {0.25F, 0.25F, 0.25F};
+  const Picture own = draw(
+      surrounded("lit.glb", {quarter, quarter, quarter, quarter, quarter, quarter}, false), with({}));
+  const Picture sky = draw(kStillLife, with({"--environment", uniformSky(0.5F)}));
+  EXPECT_LT(differing(own, sky, 0.01F), own.pixels.size() / 500);
+  EXPECT_GT(differing(own, draw(kStillLife, with({})), 0.05F), own.pixels.size() / 4) << "the studio";
+}
+
+/// What is near the walls of a room mirrors other places of them than from its middle.
+TEST_F(Pictures, ARoomHasWalls) {
+  const std::array<std::array<float, 3>, 6> walls = {
+      {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {2, 2, 0}, {0, 2, 2}, {2, 0, 2}}};
+  const Picture far = draw(surrounded("far.glb", walls, false), with({}));
+  const Picture near = draw(surrounded("near.glb", walls, true), with({}));
+  EXPECT_GT(differing(far, near, 0.1F), 300U);
 }
 
 TEST_F(Pictures, WrongWordsAreToldOf) {

@@ -400,6 +400,8 @@ export interface EnvironmentForm {
   dds?: boolean;
   /** Texels of cubes are RGB9E5; else half floats. */
   shared_exponents?: boolean;
+  /** Of a glTF file, from 0; absent: the one that it names. */
+  scene?: number;
 }
 
 /** What environment.json says, and the files' bytes by their textures: "environment_specular". */
@@ -407,6 +409,8 @@ export interface EnvironmentFiles {
   environment_max_lod: number;
   textures: Record<string, { file: string; type: string; format: string; size: number; levels: number }>;
   irradiance_harmonics: number[][];
+  /** Of a glTF file's environment: what the switch local_environment reads. */
+  box?: { min: number[]; max: number[] };
   files: Record<string, Uint8Array>;
 }
 

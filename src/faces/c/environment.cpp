@@ -17,6 +17,13 @@ static constexpr Row<Environment> kEnvironmentRows[] = {
      [](const Json& value, Environment& to) { return wholeNumber(value, to.size); }},
     {"samples", "a whole number",
      [](const Json& value, Environment& to) { return wholeNumber(value, to.samples); }},
+    {"scene", "a whole number",
+     [](const Json& value, Environment& to) {
+       uint32_t scene = 0;
+       const bool good = wholeNumber(value, scene) && scene < 0x80000000U;
+       if (good) to.scene = static_cast<int>(scene);
+       return good;
+     }},
     {"dds", kTruth, [](const Json& value, Environment& to) { return truth(value, to.dds); }},
     {"shared_exponents", kTruth,
      [](const Json& value, Environment& to) { return truth(value, to.shared_exponents); }},

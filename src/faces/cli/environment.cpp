@@ -9,12 +9,16 @@
 namespace lacquer::cli {
 
 void addEnvironment(CLI::App& verb, EnvironmentFlags& flags, OptionFlags& options) {
-  verb.add_option("picture", flags.picture, "equirectangular: Radiance HDR (.hdr) or OpenEXR (.exr)")
+  verb.add_option("picture", flags.picture, "equirectangular, Radiance HDR (.hdr) or OpenEXR (.exr), a cube map (.ktx2), or a .gltf or .glb file with "
+                  "an environment")
       ->required()
       ->check(kNotEmpty);
   verb.add_option("-o,--output", flags.environment.output, "the folder to write to")
       ->required()
       ->check(kNotEmpty);
+  verb.add_option("--scene", flags.environment.scene, "of a .gltf or .glb file, from 0; its own if absent")
+      ->check(CLI::NonNegativeNumber)
+      ->check(kWhole);
   verb.add_option("--size", flags.environment.size, "texels in a row of environment_specular's faces")
       ->check(CLI::IsMember({32, 64, 128, 256, 512, 1024}))
       ->capture_default_str();

@@ -21,12 +21,13 @@ public:
     const Strings outputs = paths();
     if (Diagnostics wrong = clashes({picture}, outputs); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
-    const Result<environment::Panorama> panorama = panoramaOf(picture, options_, messages_);
-    if (!panorama) return tl::make_unexpected(panorama.error());
+    const Result<environment::Surroundings> surroundings =
+        surroundingsOf(picture, of_.scene, options_, messages_);
+    if (!surroundings) return tl::make_unexpected(surroundings.error());
     // Before what takes a while.
     if (const Result<bool> usable = makeFolder(of_.output); !usable)
       return tl::make_unexpected(usable.error());
-    EnvironmentFiles made = filesOf(of_, *panorama, progress);
+    EnvironmentFiles made = filesOf(of_, *surroundings, progress);
     Strings files = std::move(made.files);
     files.push_back(std::move(made.description));
     for (size_t i = 0; i < files.size(); ++i) {
@@ -51,17 +52,17 @@ private:
 
 }  // namespace
 
-Result<environment::Panorama> panoramaOf(const std::string& path, const Options& options,
-                                         Messages& messages) {
+Result<environment::Surroundings> surroundingsOf(const std::string& path, int scene, const Options& options,
+                                                 Messages& messages) {
   const Result<Limits> limits = limitsOf(options);
   if (!limits) return tl::make_unexpected(limits.error());
   const Result<std::string> bytes = readFile(path, limits->file);
   if (!bytes) return tl::make_unexpected(bytes.error());
   Diagnostics warnings;
-  Result<environment::Panorama> panorama =
-      environment::readPanorama(*bytes, limits->image, {path, 0, 0, {}}, warnings);
+  Result<environment::Surroundings> surroundings =
+      environment::readSurroundings(*bytes, path, false, {*limits, options.allow, scene}, warnings);
   report(warnings, path, messages);
-  return panorama;
+  return surroundings;
 }
 
 std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, const std::string& picture,

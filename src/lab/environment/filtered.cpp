@@ -64,6 +64,8 @@ Result<void> checkEnvironment(const Environment& of) {
     return fail("out-of-range", {}, fmt::format("the size of a face is {} texels", of.size),
                 "it is a power of two from 32 to 1024");
   }
+  if (of.scene < -1)
+    return fail("out-of-range", {}, fmt::format("the scene is {}", of.scene), "scenes count from 0");
   return inRange("the number of samples", of.samples, kLeastDraws, kMostDraws, {});
 }
 
@@ -74,12 +76,10 @@ Strings environmentFiles(const Environment& of) {
   return names;
 }
 
-EnvironmentFiles filesOf(const Environment& of, const environment::Panorama& panorama,
+EnvironmentFiles filesOf(const Environment& of, const environment::Surroundings& surroundings,
                          const Progress& progress) {
-  const environment::MapOptions how{of.size, of.samples};
-  const environment::LightTree tree(panorama, environment::treeSizeOf(panorama, how));
-  const environment::Maps maps = environment::makeMaps(tree, how, progress);
-  EnvironmentFiles made{{of.output, {}, maps.lastLevel(), maps.harmonics}, {}, {}};
+  const environment::Maps maps = environment::mapsOf(surroundings, {of.size, of.samples}, progress);
+  EnvironmentFiles made{{of.output, {}, maps.lastLevel(), maps.harmonics, surroundings.box}, {}, {}};
   made.files = bytesOf(of, maps, made.maps.textures);
   made.description = environmentJson(made.maps);
   return made;
@@ -97,6 +97,7 @@ std::string environmentJson(const EnvironmentMaps& maps) {
                               {"levels", texture.levels}};
   }
   json["irradiance_harmonics"] = maps.irradiance_harmonics;
+  if (maps.box) json["box"] = {{"min", maps.box->min}, {"max", maps.box->max}};
   return json.dump(2) + "\n";
 }
 
@@ -108,11 +109,11 @@ std::optional<EnvironmentFiles> filterEnvironment(const Environment& environment
     const Result<Limits> limits = limitsOf(options);
     if (!limits) return tl::make_unexpected(limits.error());
     Diagnostics warnings;
-    const Result<environment::Panorama> panorama =
-        environment::readPanorama(picture, limits->image, {name, 0, 0, {}}, warnings);
+    const Result<environment::Surroundings> surroundings = environment::readSurroundings(
+        picture, name, true, {*limits, options.allow, environment.scene}, warnings);
     report(warnings, name, messages);
-    if (!panorama) return tl::make_unexpected(panorama.error());
-    return filesOf(environment, *panorama, progress);
+    if (!surroundings) return tl::make_unexpected(surroundings.error());
+    return filesOf(environment, *surroundings, progress);
   };
   Result<EnvironmentFiles> files;
   withJobs(options.jobs, [&] { files = made(); });

@@ -91,6 +91,31 @@ void splat(const Panorama& panorama, uint32_t row, uint32_t size, std::vector<Su
   }
 }
 
+/// The solid angle from the middle of a face to a point of it, of the rectangle between them.
+double angleTo(double s, double t) { return std::atan2(s * t, std::sqrt(1 + s * s + t * t)); }
+
+/// Puts the patches of one row of a cube's texels into the cells. A texel is cut into as many that, where
+/// cells are not a whole number of texels wide, what lies across an edge is small.
+void splat(const texture::CubeLevel& cube, uint32_t row, uint32_t size, std::vector<Sum>& cells) {
+  const uint32_t face = row / cube.size, y = row % cube.size;
+  const bool whole = cube.size % size == 0;
+  const uint32_t parts =
+      whole ? 1 : std::max(1U, static_cast<uint32_t>(std::ceil(kPatches * size / cube.size)));
+  const double step = 2.0 / cube.size / parts;
+  const auto place = [&](double x) { return std::min(size - 1, static_cast<uint32_t>((x + 1) / 2 * size)); };
+  for (uint32_t j = 0; j < parts; ++j) {
+    const double top = step * (static_cast<double>(y) * parts + j) - 1;
+    for (uint32_t i = 0; i < cube.size * parts; ++i) {
+      const double left = step * i - 1;
+      const OnFace middle{face, left + step / 2, top + step / 2};
+      const double angle = angleTo(left + step, top + step) - angleTo(left, top + step) -
+                           angleTo(left + step, top) + angleTo(left, top);
+      cells[(size_t{face} * size + place(middle.t)) * size + place(middle.s)].add(
+          cube.texels[size_t{row} * cube.size + i / parts], angle, unit(directionOf(middle)));
+    }
+  }
+}
+
 std::vector<Cell> coarser(const std::vector<Cell>& fine, uint32_t size) {
   std::vector<Cell> cells;
   cells.reserve(size_t{kFaces} * size * size);
@@ -107,24 +132,33 @@ std::vector<Cell> coarser(const std::vector<Cell>& fine, uint32_t size) {
   return cells;
 }
 
+/// From one cell for each face to the finest.
+std::vector<std::vector<Cell>> levelsOf(const std::vector<Sum>& sums, uint32_t size) {
+  std::vector<std::vector<Cell>> levels(std::countr_zero(size) + 1U);
+  levels.back().reserve(sums.size());
+  for (const Sum& sum : sums) {
+    assert(sum.angle > 0);
+    levels.back().push_back(sum.cell());
+  }
+  for (size_t i = levels.size() - 1; i-- > 0;)
+    levels[i] = coarser(levels[i + 1], uint32_t{1} << static_cast<uint32_t>(i));
+  return levels;
+}
+
 }  // namespace
 
 LightTree::LightTree(const Panorama& panorama, uint32_t size) {
   assert(std::has_single_bit(size));
-  std::vector<Cell> finest;
-  finest.reserve(size_t{kFaces} * size * size);
-  {
-    std::vector<Sum> sums(size_t{kFaces} * size * size);
-    for (uint32_t row = 0; row < panorama.height; ++row) splat(panorama, row, size, sums);
-    for (const Sum& sum : sums) {
-      assert(sum.angle > 0);
-      finest.push_back(sum.cell());
-    }
-  }
-  levels_.resize(std::countr_zero(size) + 1U);
-  levels_.back() = std::move(finest);
-  for (size_t i = levels_.size() - 1; i-- > 0;)
-    levels_[i] = coarser(levels_[i + 1], uint32_t{1} << static_cast<uint32_t>(i));
+  std::vector<Sum> sums(size_t{kFaces} * size * size);
+  for (uint32_t row = 0; row < panorama.height; ++row) splat(panorama, row, size, sums);
+  levels_ = levelsOf(sums, size);
+}
+
+LightTree::LightTree(const texture::CubeLevel& cube, uint32_t size) {
+  assert(std::has_single_bit(size));
+  std::vector<Sum> sums(size_t{kFaces} * size * size);
+  for (uint32_t row = 0; row < kFaces * cube.size; ++row) splat(cube, row, size, sums);
+  levels_ = levelsOf(sums, size);
 }
 
 // -- lobes --

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "environment/faces.h"
+#include "texture/cube.h"
 
 namespace lacquer::environment {
 
@@ -22,6 +23,8 @@ public:
   /// Each pixel of the panorama counts as a patch of one colour, cut so fine that no cell is without some of
   /// them: nothing of its light is lost, whatever `size` is. A power of two.
   LightTree(const Panorama& panorama, uint32_t size);
+  /// The same of a cube map's texels.
+  LightTree(const texture::CubeLevel& cube, uint32_t size);
 
   uint32_t size() const { return uint32_t{1} << (static_cast<uint32_t>(levels_.size()) - 1); }
   uint32_t levels() const { return static_cast<uint32_t>(levels_.size()); }

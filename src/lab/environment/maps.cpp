@@ -152,6 +152,26 @@ uint32_t treeSizeOf(const Panorama& panorama, const MapOptions& options) {
   return std::max(finest, options.size);
 }
 
+uint32_t treeSizeOf(const texture::CubeLevel& cube, const MapOptions& options) {
+  return std::max(std::min(kFinestTree, std::bit_ceil(cube.size)), options.size);
+}
+
+void setIrradiance(Maps& maps, const std::array<Vec3, 9>& harmonics) {
+  maps.harmonics = harmonics;
+  const uint32_t size = maps.irradiance.size;
+  for (size_t i = 0; i < maps.irradiance.texels.size(); ++i) {
+    const auto row = static_cast<uint32_t>(i / size);
+    const std::array<double, 9> basis =
+        harmonicsAt(texelDirection(row / size, static_cast<uint32_t>(i % size), row % size, size));
+    for (size_t c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (size_t k = 0; k < 9; ++k) sum += basis[k] * harmonics[k][c];
+      maps.irradiance.texels[i][c] =
+          std::min(static_cast<float>(std::max(sum, 0.0)), texture::kMostRadiance);
+    }
+  }
+}
+
 Maps makeMaps(const LightTree& tree, const MapOptions& options, const MapProgress& progress) {
   assert(std::has_single_bit(options.size) && options.size >= 4 * kSmallestLevel);
   assert(options.size <= tree.size());

@@ -38,9 +38,13 @@ using MapProgress = std::function<void(size_t done, size_t known)>;
 
 /// The finest cells that maps of this size are made of, for LightTree.
 uint32_t treeSizeOf(const Panorama& panorama, const MapOptions& options);
+uint32_t treeSizeOf(const texture::CubeLevel& cube, const MapOptions& options);
 
 /// Uses threads; the numbers do not depend on how many.
 Maps makeMaps(const LightTree& tree, const MapOptions& options, const MapProgress& progress = {});
+
+/// Puts other harmonics in the place of the irradiance; where they are negative there is no light.
+void setIrradiance(Maps& maps, const std::array<Vec3, 9>& harmonics);
 
 /// A texel of a level's cube, as a unit direction from its middle.
 Vec3 texelDirection(uint32_t face, uint32_t x, uint32_t y, uint32_t size);

@@ -21,10 +21,13 @@ struct Panorama {
   std::vector<Rgb> texels;
 };
 
+/// Scales colours and replaces what is no radiance: not a number and negative by 0, too large by the most.
+/// `warnings` tells how often.
+void clean(std::vector<Rgb>& colors, double scale, const Place& place, Diagnostics& warnings);
+
 /// Decodes a picture of at most `most` pixels and 32768 in a row or column; memory is taken for the pixels
-/// that its head claims. What is no radiance is replaced: not a number and negative by 0, too large by the
-/// most; `warnings` tells how often, and of a picture that is not twice as wide as high. Errors:
-/// "environment-unreadable", "image-too-large".
+/// that its head claims. The colours are cleaned; `warnings` tells of a picture that is not twice as wide as
+/// high, too. Errors: "environment-unreadable", "image-too-large".
 Result<Panorama> readPanorama(std::string_view bytes, uint64_t most, const Place& place,
                               Diagnostics& warnings);
 

@@ -3,20 +3,22 @@
 
 #include <string>
 
-#include "environment/panorama.h"
+#include "environment/surroundings.h"
 #include "lacquer.h"
 
 namespace lacquer {
 
-/// Warnings are reported. Errors: those of readFile(), environment::readPanorama() and of the limits.
-Result<environment::Panorama> panoramaOf(const std::string& path, const Options& options, Messages& messages);
+/// Of a file; `scene` is that of Environment. Warnings are reported. Errors: those of readFile(),
+/// environment::readSurroundings() and of the limits.
+Result<environment::Surroundings> surroundingsOf(const std::string& path, int scene, const Options& options,
+                                                 Messages& messages);
 
 /// Errors: "out-of-range".
 Result<void> checkEnvironment(const Environment& of);
 /// The names of the files, the description last.
 Strings environmentFiles(const Environment& of);
 /// What checkEnvironment() has accepted. Uses threads.
-EnvironmentFiles filesOf(const Environment& of, const environment::Panorama& panorama,
+EnvironmentFiles filesOf(const Environment& of, const environment::Surroundings& surroundings,
                          const Progress& progress);
 
 /// The text of environment.json.

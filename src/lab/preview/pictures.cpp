@@ -178,10 +178,10 @@ private:
     // Fine enough for a ball: the finest level has a texel for two degrees and a half.
     constexpr environment::MapOptions kFine{128, 512};
     if (preview_.environment.empty()) return {};
-    const Result<environment::Panorama> panorama = panoramaOf(preview_.environment, options_, messages_);
-    if (!panorama) return tl::make_unexpected(panorama.error());
-    const environment::LightTree tree(*panorama, environment::treeSizeOf(*panorama, kFine));
-    studio_ = preview::Studio(environment::makeMaps(tree, kFine));
+    const Result<environment::Surroundings> surroundings =
+        surroundingsOf(preview_.environment, -1, options_, messages_);
+    if (!surroundings) return tl::make_unexpected(surroundings.error());
+    studio_ = preview::Studio(environment::mapsOf(*surroundings, kFine));
     return {};
   }
 

@@ -94,6 +94,10 @@ inline constexpr std::string_view kAreaLights = "EXT_lights_area";
 /// What a light of EXT_lights_area comes to: its type, "unknown" where it cannot be used.
 Json readAreaLight(Report& report, const Json& light, const Path& path);
 
+/// The environments of a file, in either spelling of the extension, and the one that a scene's object names.
+void checkEnvironmentLights(Reading& reading, const Json& extension, std::string_view name, const Path& path);
+void checkEnvironmentOfScene(Reading& reading, const Json& scene, const Path& path);
+
 /// What the animations change by pointers.
 void readAnimations(Reading& reading, const Json& animations, const Path& path);
 

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "gltf/lights_environment.h"
 #include "gltf/reading.h"
 #include "gltf/scene.h"
 #include "gltf/version.h"
@@ -88,6 +90,9 @@ void SceneChecker::section(std::string_view name, const Json& value) {
     out_["nodes"] = elements(value, path, "node", [&](const Json& n, const Path& p) { return node(n, p); });
   } else if (name == "images") {
     eachElement(report_, value, path, "image", [&](const Json& i, const Path& p, size_t) { image(i, p); });
+  } else if (name == "scenes") {
+    eachElement(report_, value, path, "scene",
+                [&](const Json& s, const Path& p, size_t) { checkEnvironmentOfScene(reading_, s, p); });
   } else if (name == "externalAssets" && isOfVersion(root_, 1)) {
     eachElement(report_, value, path, "external asset",
                 [&](const Json& e, const Path& p, size_t) { externalAsset(e, p); });
@@ -122,6 +127,8 @@ void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
   members(extensions, path, "extensions", [&](std::string_view name, const Json& value, const Path& here) {
     if (name == kVariants) return readVariants(reading_, value, here);
     if (name == kIesLights) return checkIesLights(reading_, value, here);
+    if (std::find(std::begin(kEnvironments), std::end(kEnvironments), name) != std::end(kEnvironments))
+      return checkEnvironmentLights(reading_, value, name, here);
     const bool area = name == kAreaLights;
     if (name != kLights && !area) return;
     members(value, here, name, [&](std::string_view key, const Json& lights, const Path& p) {

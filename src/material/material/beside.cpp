@@ -15,6 +15,8 @@ constexpr std::string_view kStored = "how vertices are stored; a shader reads fl
 constexpr std::string_view kMeshes = "which geometry is drawn";
 constexpr std::string_view kImages = "in which format an image is stored";
 constexpr std::string_view kLights = "which lights there are; the application gives them";
+constexpr std::string_view kEnvironments =
+    "what a scene is lit by all around; `lacquer environment` makes its maps";
 constexpr std::string_view kNodes = "which nodes there are and what they can do";
 constexpr std::string_view kData = "data beside the picture";
 
@@ -44,6 +46,8 @@ constexpr Beside kRows[] = {
     {"KHR_texture_procedurals", "it is implemented, in textureInfos"},
     {"EXT_texture_procedurals_mx_1_39", "which nodes the procedural textures have"},
     {"KHR_lights_punctual", kLights},
+    {"KHR_lights_environment", kEnvironments},
+    {"KHR_environment_map", kEnvironments},
     {"EXT_lights_area", kLights},
     {"EXT_lights_ies", "which lights there are; `lacquer profile` makes their tables"},
     {"EXT_lights_image_based", kLights},
