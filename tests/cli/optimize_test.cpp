@@ -87,9 +87,19 @@ TEST(Tune, ANodesFrontFallsAsItsErrorGrows) {
     EXPECT_LT(forms[i]["cycles"], forms[i - 1]["cycles"]);
     EXPECT_GE(forms[i]["approximations"], 1);
   }
-  const Outcome table = place.run({"tune", "coat_absorption"}, kLong);
+  const Outcome table = place.run({"tune", "coat_absorption", "--picture", "front.svg"}, kLong);
+  const std::string picture = readFile(place.path() / "front.svg");
+  EXPECT_TRUE(picture.starts_with("<svg xmlns=")) << picture;
+  size_t circles = 0;
+  for (size_t at = 0; (at = picture.find("<circle", at)) != std::string::npos; ++at) ++circles;
+  EXPECT_EQ(circles, forms.size());
+  for (const char* wrong : {"nan", "inf", "-nan"}) EXPECT_EQ(picture.find(wrong), std::string::npos) << wrong;
   EXPECT_NE(table.out.find("coat_absorption: "), std::string::npos) << table.all();
   EXPECT_EQ(place.run({"tune", "no_such_node"}).status, 2);
+  place.write("a.gltf", gltfOf({"{}"}));
+  const Outcome over = place.run({"tune", "a.gltf", "--picture", "a.gltf"}, kLong);
+  EXPECT_EQ(over.status, 1);
+  EXPECT_TRUE(readFile(place.path() / "a.gltf").starts_with("{")) << "it is not written over";
   for (const char* file : {"absent.mtlx", "absent.gltf", "absent.json"})
     EXPECT_NE(place.run({"tune", file}).err.find("[file-unreadable]"), std::string::npos) << file;
   EXPECT_NE(place.run({"tune", "coat_absorption.none"}).err.find("[no-such-variant]"), std::string::npos);

@@ -8,8 +8,12 @@
 #include "cli/graphs.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "cli/tune_picture.h"
 #include "json/json.h"
 #include "lacquer/variant.h"
+#include "support/diagnostic.h"
+#include "support/file.h"
+#include "support/outputs.h"
 
 namespace lacquer::cli {
 
@@ -20,11 +24,14 @@ void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
       ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
   CLI::Option* json = verb.add_flag("--json", flags.json, "as JSON");
+  CLI::Option* picture = verb.add_option("--picture", flags.picture, "run time against error, as SVG, to that file")
+                             ->check(kNotEmpty);
   CLI::Option* variant =
       verb.add_option("--variant", flags.variant,
                       "of a node: prints a form as a variant of that name, to stand behind the node's bodies")
           ->check(kNotEmpty)
-          ->excludes(json);
+          ->excludes(json)
+          ->excludes(picture);
   verb.add_option("--form", flags.form,
                   "which line of the table --variant takes, from 1 on; without it the last")
       ->check(kWhole)
@@ -78,6 +85,17 @@ std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messag
   return graph ? tune(graph, options, messages) : found;
 }
 
+/// Writes the picture, never over what is read.
+bool draw(const Tuned& tuned, const Strings& inputs, const std::string& file) {
+  Diagnostics wrong = clashes(inputs, {file});
+  if (wrong.empty()) {
+    if (Result<bool> done = writeFile(file, pictureOf(tuned), {nullptr, false}); !done)
+      wrong = std::move(done.error());
+  }
+  for (const Diagnostic& one : wrong) fmt::print(stderr, "{}\n", format(one));
+  return wrong.empty();
+}
+
 /// A node, a variant, a name or a line that is not there is wrong usage; files have errors of their own.
 int statusOf(const TuneFlags& flags, const Messages& messages) {
   constexpr int kFailed = 1;
@@ -100,6 +118,10 @@ int runTune(const TuneFlags& flags, const Options& options) {
   const std::optional<Tuned> tuned = find(flags, options, messages);
   print(messages);
   if (!tuned || hasError(messages)) return statusOf(flags, messages);
+  if (!flags.picture.empty()) {
+    const Strings inputs = isFile(flags.subject) ? Strings{flags.subject} : Strings{};
+    if (!draw(*tuned, inputs, flags.picture)) return 1;
+  }
   if (flags.json)
     printJson(*tuned);
   else
