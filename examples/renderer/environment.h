@@ -19,8 +19,8 @@ struct Environment {
 Environment readEnvironment(Device& device, const std::string& folder);
 
 /// The folder with the maps of a picture, filtered now where `cache` does not hold them. Without a picture
-/// those of the scene's own environment or, where it has none, of a plain studio. Throws what is wrong with the
-/// picture.
+/// those of the scene's own environment or, where it has none, of a plain studio. Throws what is wrong with
+/// the picture.
 std::string environmentOf(const std::string& picture, const std::string& scene, const std::string& cache);
 
 }  // namespace renderer

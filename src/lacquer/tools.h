@@ -210,10 +210,10 @@ struct Environment {
   int scene = -1;                 ///< of a glTF file; -1 for the one that it names
 };
 /// Reads a picture of the surroundings and writes the cube maps and tables that templates read
-/// (environment_specular, environment_charlie, environment_irradiance, environment_dfg, environment_sheen) and
-/// environment.json, which names them. The picture is equirectangular, Radiance HDR or OpenEXR, a cube map in
-/// a KTX2 file, or the environment of a glTF file's scene (KHR_lights_environment). Nothing on an error:
-/// "environment-unreadable", "image-too-large", "no-environment" and the like. Uses threads.
+/// (environment_specular, environment_charlie, environment_irradiance, environment_dfg, environment_sheen)
+/// and environment.json, which names them. The picture is equirectangular, Radiance HDR or OpenEXR, a cube
+/// map in a KTX2 file, or the environment of a glTF file's scene (KHR_lights_environment). Nothing on an
+/// error: "environment-unreadable", "image-too-large", "no-environment" and the like. Uses threads.
 std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, const std::string& picture,
                                                 const Options& options, Messages& messages,
                                                 const Progress& progress = {});

@@ -217,6 +217,10 @@ TEST_F(Files, ThePreviewIsLitByThem) {
   EXPECT_NE(readFile(preview.output), studio_bytes);
   preview.environment = file;
   EXPECT_FALSE(drawPreview(preview, {file}, {}, {}, messages));
+  EXPECT_EQ(messages.back().code, "no-environment");
+  preview.environment = preview.output;
+  preview.output += ".other.png";
+  EXPECT_FALSE(drawPreview(preview, {file}, {}, {}, messages));
   EXPECT_EQ(messages.back().code, "environment-unreadable");
 }
 

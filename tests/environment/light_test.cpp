@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -120,17 +122,19 @@ TEST(CubeMaps, WhatIsNoCubeIsAnError) {
   EXPECT_EQ(outcome(ktx2(106, 0, data)), "environment-unreadable: the KTX2 file holds no cube map");
   EXPECT_EQ(outcome(ktx2(106, 1, data, 0, 6, 2)),
             "environment-unreadable: the KTX2 file is supercompressed, by scheme 2");
-  EXPECT_EQ(outcome(ktx2(145, 1, data)), "environment-unreadable: the KTX2 file's texels have the VkFormat 145");
+  EXPECT_EQ(outcome(ktx2(145, 1, data)),
+            "environment-unreadable: the KTX2 file's texels have the VkFormat 145");
   EXPECT_EQ(outcome(good, 1), "environment-unreadable: the KTX2 file has no cube map 1");
   EXPECT_EQ(outcome(ktx2(106, 1, data, 2), 1),
             "environment-unreadable: the KTX2 file ends before its largest level does");
   EXPECT_EQ(outcome(ktx2(106, 1, data + data, 2), 1), "read");
-  EXPECT_EQ(outcome(ktx2(106, 2, data)), "environment-unreadable: the KTX2 file ends before its largest level does");
+  EXPECT_EQ(outcome(ktx2(106, 2, data)),
+            "environment-unreadable: the KTX2 file ends before its largest level does");
   EXPECT_EQ(outcome(ktx2(106, 4096, data), 0, 1024).substr(0, 15), "image-too-large");
 }
 
-/// Texels of a mirror are the file's where both have the size; light that is linear in the direction keeps two
-/// thirds of its slope as irradiance, exactly.
+/// Texels of a mirror are the file's where both have the size; light that is linear in the direction keeps
+/// two thirds of its slope as irradiance, exactly.
 TEST(CubeMaps, AreFilteredAsPicturesAre) {
   for (const uint32_t size : {32U, 48U, 20U}) {
     Surroundings surroundings;
@@ -260,6 +264,44 @@ TEST(EnvironmentLights, FilesHaveTheBox) {
   EXPECT_TRUE(messages.empty());
 }
 
+/// A cube map beside its file is read from there, with --allow from elsewhere, and never written over.
+TEST(EnvironmentLights, ReadTheirFilesAndKeepThem) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "lacquer_scene_light";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "elsewhere");
+  std::string data;
+  for (size_t i = 0; i < 18; ++i) data += bytesOf(0x3F800000U, 4);
+  json gltf = file();
+  gltf["extensions"][kNames[0]]["cubemaps"][1]["layer"] = 0;
+  const auto write = [&](const fs::path& cube) {
+    std::ofstream(folder / cube, std::ios::binary) << ktx2(106, 1, data);
+    gltf["extensions"][kNames[0]]["images"][0]["uri"] = cube.string();
+    std::ofstream(folder / "in" / "a.gltf") << gltf.dump();
+  };
+  fs::create_directories(folder / "in");
+  const auto outcome = [&](const fs::path& to, const Strings& allow = {}) {
+    Environment how{to.string(), 32, 64};
+    Options options;
+    options.allow = allow;
+    Messages messages;
+    const bool good = writeEnvironment(how, (folder / "in/a.gltf").string(), options, messages).has_value();
+    return good ? "written" : messages.back().code;
+  };
+  write("in/environment_specular.ktx2");
+  gltf["extensions"][kNames[0]]["images"][0]["uri"] = "environment_specular.ktx2";
+  std::ofstream(folder / "in" / "a.gltf") << gltf.dump();
+  EXPECT_EQ(outcome(folder / "out"), "written");
+  EXPECT_EQ(outcome(folder / "in"), "output-clash");
+  EXPECT_EQ(fs::file_size(folder / "in/environment_specular.ktx2"), ktx2(106, 1, data).size());
+  write("elsewhere/cube.ktx2");
+  gltf["extensions"][kNames[0]]["images"][0]["uri"] = "../elsewhere/cube.ktx2";
+  std::ofstream(folder / "in" / "a.gltf") << gltf.dump();
+  EXPECT_EQ(outcome(folder / "out"), "image-outside");
+  EXPECT_EQ(outcome(folder / "out", {(folder / "elsewhere").string()}), "written");
+  fs::remove_all(folder);
+}
+
 struct Wrong {
   const char* what;
   void (*change)(json&);
@@ -281,12 +323,19 @@ const Wrong kWrong[] = {
     {"a negative intensity", [](json& j) { cubeOf(j)["intensity"] = -1; },
      "/intensity: error: intensity is -1"},
     {"eight coefficients",
-     [](json& j) { lightOf(j)["irradianceCoefficients"] = json(8, json::array({1, 1, 1})); },
+     [](json& j) {
+       lightOf(j)["irradianceCoefficients"] = json(8, json::array({1, 1, 1}));
+     },
      "irradianceCoefficients has 8 elements"},
     {"a coefficient of two",
-     [](json& j) { lightOf(j)["irradianceCoefficients"] = json(9, json::array({1, 1})); },
+     [](json& j) {
+       lightOf(j)["irradianceCoefficients"] = json(9, json::array({1, 1}));
+     },
      "/irradianceCoefficients/0: error: a coefficient has 2 elements"},
-    {"one corner", [](json& j) { lightOf(j)["boundingBoxMin"] = {0, 0, 0}; },
+    {"one corner",
+     [](json& j) {
+       lightOf(j)["boundingBoxMin"] = {0, 0, 0};
+     },
      "the light has one corner of its box"},
     {"a flat box",
      [](json& j) {
@@ -301,8 +350,8 @@ const Wrong kWrong[] = {
     {"no KTX2",
      [](json& j) { j["extensions"][kNames[0]]["images"][0]["uri"] = "data:image/ktx2;base64,AAAA"; },
      "/images/0: error: the environment's image is no KTX2 file"},
-    {"a file that is not there", [](json& j) { j["extensions"][kNames[0]]["images"][0]["uri"] = "none.ktx2"; },
-     "[image-missing]"},
+    {"a file that is not there",
+     [](json& j) { j["extensions"][kNames[0]]["images"][0]["uri"] = "none.ktx2"; }, "[image-missing]"},
     {"a scene's light that is not there",
      [](json& j) { j["scenes"][1]["extensions"][kNames[0]]["light"] = 5; },
      "/scenes/1/extensions/KHR_lights_environment/light: error: light 5 is out of range"},

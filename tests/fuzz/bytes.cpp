@@ -81,8 +81,8 @@ std::string feedPanorama(std::string_view bytes) {
   const auto* cube = std::get_if<texture::CubeLevel>(&surroundings->picture);
   const auto& texels = panorama != nullptr ? panorama->texels : cube->texels;
   if (texels.size() > kMostPixels) return "a picture is larger than it may be";
-  const size_t pixels = panorama != nullptr ? size_t{panorama->width} * panorama->height
-                                            : size_t{6} * cube->size * cube->size;
+  const size_t pixels =
+      panorama != nullptr ? size_t{panorama->width} * panorama->height : size_t{6} * cube->size * cube->size;
   if (texels.size() != pixels) return "pixels are missing";
   for (const environment::Rgb& color : texels) {
     for (const float x : color) {

@@ -1,5 +1,5 @@
-// An environment that is local is the environment whose maps show, along a ray, what a box's walls have where it
-// ends.
+// An environment that is local is the environment whose maps show, along a ray, what a box's walls have where
+// it ends.
 #include <gtest/gtest.h>
 
 #include "parity/clustered.h"

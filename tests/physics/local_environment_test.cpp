@@ -23,8 +23,8 @@ Vec3 seen(const Vec3& direction, const Vec3& place, const Vec3& least, const Vec
           static_cast<double>(values[0][2])};
 }
 
-void expectSeen(const Vec3& expected, const Vec3& direction, const Vec3& place, const Vec3& least = {-2, -2, -2},
-                const Vec3& most = {2, 2, 2}) {
+void expectSeen(const Vec3& expected, const Vec3& direction, const Vec3& place,
+                const Vec3& least = {-2, -2, -2}, const Vec3& most = {2, 2, 2}) {
   const Vec3 exact = seen<double>(direction, place, least, most);
   const Vec3 rounded = seen<float>(direction, place, least, most);
   for (size_t c = 0; c < 3; ++c) {

@@ -263,8 +263,8 @@ fs::path surrounded(const char* name, const std::array<std::array<float, 3>, 6>&
 
 TEST_F(Pictures, TheScenesOwnEnvironmentLightsIt) {
   const std::array<float, 3> quarter = {0.25F, 0.25F, 0.25F};
-  const Picture own = draw(
-      surrounded("lit.glb", {quarter, quarter, quarter, quarter, quarter, quarter}, false), with({}));
+  const Picture own =
+      draw(surrounded("lit.glb", {quarter, quarter, quarter, quarter, quarter, quarter}, false), with({}));
   const Picture sky = draw(kStillLife, with({"--environment", uniformSky(0.5F)}));
   EXPECT_LT(differing(own, sky, 0.01F), own.pixels.size() / 500);
   EXPECT_GT(differing(own, draw(kStillLife, with({})), 0.05F), own.pixels.size() / 4) << "the studio";

@@ -9,7 +9,9 @@
 namespace lacquer::cli {
 
 void addEnvironment(CLI::App& verb, EnvironmentFlags& flags, OptionFlags& options) {
-  verb.add_option("picture", flags.picture, "equirectangular, Radiance HDR (.hdr) or OpenEXR (.exr), a cube map (.ktx2), or a .gltf or .glb file with "
+  verb.add_option("picture", flags.picture,
+                  "equirectangular, Radiance HDR (.hdr) or OpenEXR (.exr), a cube map (.ktx2), or a .gltf or "
+                  ".glb file with "
                   "an environment")
       ->required()
       ->check(kNotEmpty);
@@ -34,6 +36,7 @@ void addEnvironment(CLI::App& verb, EnvironmentFlags& flags, OptionFlags& option
       ->check(CLI::IsMember({"half", "rgb9e5"}))
       ->capture_default_str();
   addJobs(verb, options);
+  addAllow(verb, options, "cube maps of a glTF file");
   verb.add_flag("--json", flags.json, "what was written, as environment.json has it");
   verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
   addLimit(verb, options);

@@ -24,8 +24,9 @@ void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
       ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
   CLI::Option* json = verb.add_flag("--json", flags.json, "as JSON");
-  CLI::Option* picture = verb.add_option("--picture", flags.picture, "run time against error, as SVG, to that file")
-                             ->check(kNotEmpty);
+  CLI::Option* picture =
+      verb.add_option("--picture", flags.picture, "run time against error, as SVG, to that file")
+          ->check(kNotEmpty);
   CLI::Option* variant =
       verb.add_option("--variant", flags.variant,
                       "of a node: prints a form as a variant of that name, to stand behind the node's bodies")

@@ -43,9 +43,8 @@ std::string text(double x, double y, const char* anchor, const std::string& what
 }
 
 std::string line(double x0, double y0, double x1, double y1, const char* color) {
-  return fmt::format(
-      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x0, y0, x1, y1,
-      color);
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x0,
+                     y0, x1, y1, color);
 }
 
 std::string axesOf(const Scale& scale) {
@@ -64,8 +63,9 @@ std::string axesOf(const Scale& scale) {
     svg += text(x, bottom + 18, "middle", fmt::format("1e{}", decade));
   }
   svg += text((kLeft + right) / 2, bottom + 40, "middle", "error, proved");
-  svg += fmt::format("<text transform=\"translate(18 {:.1f}) rotate(-90)\" text-anchor=\"middle\">cycles</text>\n",
-                     (kTop + bottom) / 2);
+  svg += fmt::format(
+      "<text transform=\"translate(18 {:.1f}) rotate(-90)\" text-anchor=\"middle\">cycles</text>\n",
+      (kTop + bottom) / 2);
   return svg;
 }
 
@@ -96,9 +96,10 @@ std::string pictureOf(const Tuned& tuned) {
     x = scale.x(form.error);
     y = scale.y(form.cycles);
     steps += fmt::format(" H {:.1f} V {:.1f}", x, y);
-    points += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"#06c\"><title>error {:.2g}, {:.0f} "
-                          "cycles, {} approximations</title></circle>\n",
-                          x, y, form.error, form.cycles, form.approximations);
+    points += fmt::format(
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"#06c\"><title>error {:.2g}, {:.0f} "
+        "cycles, {} approximations</title></circle>\n",
+        x, y, form.error, form.cycles, form.approximations);
     // What is named stands beside what is named, not over it.
     if (y - last_name < 13) continue;
     last_name = y;

@@ -42,8 +42,7 @@ constexpr Format kFormats[] = {
 
 uint64_t number(std::string_view bytes, size_t at, size_t count) {
   uint64_t value = 0;
-  for (size_t i = 0; i < count; ++i)
-    value |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  for (size_t i = 0; i < count; ++i) value |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
   return value;
 }
 
@@ -53,8 +52,9 @@ float smallFloat(uint32_t bits, int mantissa_bits) {
   const int exponent = static_cast<int>(bits >> mantissa_bits);
   const auto mantissa = static_cast<float>(bits & ((1U << mantissa_bits) - 1));
   if (exponent == 31) return mantissa == 0 ? INFINITY : NAN;
-  return exponent == 0 ? std::ldexp(mantissa, -14 - mantissa_bits)
-                       : std::ldexp(mantissa + std::ldexp(1.0F, mantissa_bits), exponent - 15 - mantissa_bits);
+  return exponent == 0
+             ? std::ldexp(mantissa, -14 - mantissa_bits)
+             : std::ldexp(mantissa + std::ldexp(1.0F, mantissa_bits), exponent - 15 - mantissa_bits);
 }
 
 float halfFloat(uint32_t bits) {
@@ -100,8 +100,9 @@ Result<Head> headOf(std::string_view bytes, const Place& place) {
     return fail("environment-unreadable", place, std::move(message), std::move(help));
   };
   if (bytes.size() < kHeader + kLevel)
-    return wrong(fmt::format("a KTX2 file has at least {} bytes, this one {}", kHeader + kLevel, bytes.size()),
-                 "it was cut off");
+    return wrong(
+        fmt::format("a KTX2 file has at least {} bytes, this one {}", kHeader + kLevel, bytes.size()),
+        "it was cut off");
   const auto field = [&](size_t at) { return static_cast<uint32_t>(number(bytes, at, 4)); };
   const uint32_t format = field(12), width = field(20), height = field(24), depth = field(28);
   const uint32_t scheme = field(44);
@@ -116,9 +117,10 @@ Result<Head> headOf(std::string_view bytes, const Place& place) {
   head.format = std::find_if(std::begin(kFormats), std::end(kFormats),
                              [&](const Format& row) { return row.number == format; });
   if (head.format == std::end(kFormats)) {
-    return wrong(fmt::format("the KTX2 file's texels have the VkFormat {}", format),
-                 "R8G8B8 (UNORM, SRGB), R16G16B16 (UNORM, SFLOAT) and R32G32B32_SFLOAT, with or without alpha, "
-                 "E5B9G9R9_UFLOAT_PACK32 and B10G11R11_UFLOAT_PACK32 are read");
+    return wrong(
+        fmt::format("the KTX2 file's texels have the VkFormat {}", format),
+        "R8G8B8 (UNORM, SRGB), R16G16B16 (UNORM, SFLOAT) and R32G32B32_SFLOAT, with or without alpha, "
+        "E5B9G9R9_UFLOAT_PACK32 and B10G11R11_UFLOAT_PACK32 are read");
   }
   head.size = width;
   head.layers = std::max(field(32), 1U);
@@ -138,15 +140,14 @@ Result<texture::CubeLevel> readCube(std::string_view bytes, uint32_t layer, uint
   if (Result<void> good = checkSize(head->size, int64_t{kFaces} * head->size, most, place); !good)
     return tl::make_unexpected(good.error());
   if (layer >= head->layers) {
-    return fail("environment-unreadable", place,
-                fmt::format("the KTX2 file has no cube map {}", layer),
+    return fail("environment-unreadable", place, fmt::format("the KTX2 file has no cube map {}", layer),
                 fmt::format("it has {}, from 0 on", head->layers));
   }
   const Format& format = *head->format;
   const uint64_t texels = uint64_t{kFaces} * head->size * head->size;
   const uint64_t skipped = layer * texels * format.bytes, wanted = texels * format.bytes;
-  if (head->offset > bytes.size() || head->length > bytes.size() - head->offset ||
-      skipped > head->length || wanted > head->length - skipped) {
+  if (head->offset > bytes.size() || head->length > bytes.size() - head->offset || skipped > head->length ||
+      wanted > head->length - skipped) {
     return fail("environment-unreadable", place, "the KTX2 file ends before its largest level does",
                 "it was cut off, or its index is wrong");
   }

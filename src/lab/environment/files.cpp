@@ -24,6 +24,8 @@ public:
     const Result<environment::Surroundings> surroundings =
         surroundingsOf(picture, of_.scene, options_, messages_);
     if (!surroundings) return tl::make_unexpected(surroundings.error());
+    if (Diagnostics wrong = clashes(surroundings->files, outputs); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
     // Before what takes a while.
     if (const Result<bool> usable = makeFolder(of_.output); !usable)
       return tl::make_unexpected(usable.error());

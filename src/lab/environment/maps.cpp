@@ -166,8 +166,7 @@ void setIrradiance(Maps& maps, const std::array<Vec3, 9>& harmonics) {
     for (size_t c = 0; c < 3; ++c) {
       double sum = 0;
       for (size_t k = 0; k < 9; ++k) sum += basis[k] * harmonics[k][c];
-      maps.irradiance.texels[i][c] =
-          std::min(static_cast<float>(std::max(sum, 0.0)), texture::kMostRadiance);
+      maps.irradiance.texels[i][c] = std::min(static_cast<float>(std::max(sum, 0.0)), texture::kMostRadiance);
     }
   }
 }

@@ -11,10 +11,11 @@ namespace lacquer::environment {
 Result<Surroundings> readSceneLight(std::string_view bytes, const std::string& file, bool in_memory,
                                     const SurroundingsAccess& access, Diagnostics& warnings) {
   const gltf::TextureAccess how{access.limits, access.allow};
-  Result<gltf::TextureFile> opened = in_memory ? gltf::TextureFile::fromMemory(bytes, file, how)
-                                               : gltf::TextureFile::open(file, how);
+  Result<gltf::TextureFile> opened =
+      in_memory ? gltf::TextureFile::fromMemory(bytes, file, how) : gltf::TextureFile::open(file, how);
   if (!opened) return tl::make_unexpected(opened.error());
-  const Result<gltf::EnvironmentLight> light = gltf::environmentOf(opened->root(), access.scene, file, warnings);
+  const Result<gltf::EnvironmentLight> light =
+      gltf::environmentOf(opened->root(), access.scene, file, warnings);
   if (!light) return tl::make_unexpected(light.error());
   const Place place{file, 0, 0, light->pointer};
   const Result<std::string> image = opened->bytesOf(*light->image, place);
@@ -34,6 +35,7 @@ Result<Surroundings> readSceneLight(std::string_view bytes, const std::string& f
       for (size_t i = 0; i < 3; ++i) (*made.irradiance)[k][i] = (*light->irradiance)[k][i] / std::numbers::pi;
     }
   }
+  made.files = opened->filesRead();
   if (light->box) made.box = EnvironmentBox{(*light->box)[0], (*light->box)[1]};
   return made;
 }

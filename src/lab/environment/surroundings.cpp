@@ -39,9 +39,8 @@ Result<Surroundings> readSurroundings(std::string_view bytes, const std::string&
 }
 
 LightTree treeOf(const Surroundings& surroundings, const MapOptions& options) {
-  return std::visit(
-      [&](const auto& picture) { return LightTree(picture, treeSizeOf(picture, options)); },
-      surroundings.picture);
+  return std::visit([&](const auto& picture) { return LightTree(picture, treeSizeOf(picture, options)); },
+                    surroundings.picture);
 }
 
 Maps mapsOf(const Surroundings& surroundings, const MapOptions& options, const MapProgress& progress) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "environment/maps.h"
 #include "environment/panorama.h"
@@ -19,6 +20,7 @@ struct Surroundings {
   /// Of KHR_lights_environment, as Maps::harmonics has them: they stand for the picture's irradiance.
   std::optional<std::array<Vec3, 9>> irradiance;
   std::optional<EnvironmentBox> box;
+  std::vector<std::string> files = {};  ///< that a glTF file names, and that were read
 };
 
 /// How files are read.

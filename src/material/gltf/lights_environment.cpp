@@ -55,7 +55,8 @@ private:
     if (const Json* all = member(light, "irradianceCoefficients"))
       coefficients(*all, Path(path, "irradianceCoefficients"), factor, made);
     box(light, path, made);
-    if (const Json* ior = member(light, "ior"); ior != nullptr && !(ior->is_number() && ior->get<double>() == 1))
+    if (const Json* ior = member(light, "ior");
+        ior != nullptr && !(ior->is_number() && ior->get<double>() == 1))
       report_.warning("unused-property", Path(path, "ior"), "the medium's index of refraction is not used",
                       "materials lie in air");
     return made;
@@ -96,7 +97,8 @@ private:
 
   void coefficients(const Json& all, const Path& path, double factor, EnvironmentLight& made) {
     if (!all.is_array())
-      return report_.wrongType(path, "irradianceCoefficients", all, "an array of nine arrays of three numbers");
+      return report_.wrongType(path, "irradianceCoefficients", all,
+                               "an array of nine arrays of three numbers");
     if (all.size() != 9) {
       return report_.error("wrong-length", path,
                            fmt::format("irradianceCoefficients has {}", countOf(all.size(), "element")),
@@ -163,7 +165,8 @@ private:
   void image(const Json& cube, const Path& path, EnvironmentLight& made) {
     const Json* source = member(cube, "source");
     if (source == nullptr)
-      return report_.error("missing-property", path, "the cubemap has no \"source\"", "it must name an image");
+      return report_.error("missing-property", path, "the cubemap has no \"source\"",
+                           "it must name an image");
     const bool own = member(extension_, "images") != nullptr;
     const Json& owner = own ? extension_ : root_;
     int index = -1;
@@ -204,7 +207,8 @@ int lightOf(const Json& extension, const Path& path, size_t count, Report& repor
 
 }  // namespace
 
-void checkEnvironmentLights(Reading& reading, const Json& extension, std::string_view name, const Path& path) {
+void checkEnvironmentLights(Reading& reading, const Json& extension, std::string_view name,
+                            const Path& path) {
   if (!extension.is_object()) return reading.report.wrongType(path, name, extension, "an object");
   EnvironmentReader(reading.root, extension, path, reading.report).check();
 }
@@ -247,8 +251,7 @@ Result<EnvironmentLight> environmentOf(const Json& root, int scene, const std::s
     const Path here(extensions, name);
     EnvironmentReader reader(root, *extension, here, report);
     const Json* of_scene =
-        wanted < 0 ? nullptr
-                   : extensionOf((*member(root, "scenes"))[static_cast<size_t>(wanted)], name);
+        wanted < 0 ? nullptr : extensionOf((*member(root, "scenes"))[static_cast<size_t>(wanted)], name);
     int index = reader.count() == 1 && scene < 0 ? 0 : -1;
     if (of_scene != nullptr) {
       const Path scenes(top, "scenes");
