@@ -166,7 +166,12 @@ export function writeScene(folder, work) {
   if (work.wall && kClear.some((name) => work.extensionsUsed.includes(name))) bytes = addWall(scene, bytes);
   delete scene.wall;
   writeFileSync(join(folder, 'ball.bin'), bytes);
-  for (const { uri } of (work.images ?? []).filter(({ uri: name }) => name in kTexels)) writeFileSync(join(folder, uri), png(4, 4, () => kTexels[uri]));
+  for (const [i, { uri }] of (work.images ?? []).entries()) {
+    // What is in the file itself lies beside it, too, under the name that a MaterialX document of it says.
+    const inside = /^data:image\/png;base64,(.*)$/.exec(uri);
+    if (inside) writeFileSync(join(folder, `image_${i}.png`), Buffer.from(inside[1], 'base64'));
+    else writeFileSync(join(folder, uri), png(4, 4, () => kTexels[uri]));
+  }
   writeFileSync(join(folder, 'ball.gltf'), JSON.stringify(scene, null, 1));
   return join(folder, 'ball.gltf');
 }

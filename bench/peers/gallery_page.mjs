@@ -40,9 +40,9 @@ export function galleryPage(record, entries) {
   return `# The gallery
 
 ${entries.length} materials, one for each extension and the interesting pairs, on the same ball: ours, and beside it, each with four
-times the difference, in this order: ${names.join(', ')}. \`./dev bench gallery\` draws it and writes this page; the materials
+times the difference, ${names.join(', ')}, a row for each line of a table. \`./dev bench gallery\` draws it and writes this page; the materials
 are [bench/peers/gallery.gltf](../bench/peers/gallery.gltf), the numbers [bench/gallery.json](../bench/gallery.json), and light and
-camera those of [the measurements](cost.md#the-peers): with a wall as bright as the environment behind what lets light through.
+camera those of [the measurements](cost.md#the-peers), with a wall as bright as the environment behind what lets light through.
 
 After \`./dev web\` a material's name opens it in [the editor](web.md), whose list of files has the gallery, too.
 
@@ -50,9 +50,13 @@ After \`./dev web\` a material's name opens it in [the editor](web.md), whose li
   same), then the mean and the largest difference of the pictures, in linear RGB.
 - "no": with and without the extension the peer has the same shader, the same numbers in it and the same picture. No figure before
   the difference: core glTF, or an effect that this light does not show.
+- MaterialX gets the document that we write of a material; what that cannot say, it does not know here.
+- The largest difference is often that of a highlight a few pixels wide: the coats have a roughness of 0.1.
 - The light flatters everybody: the environment is the same from all sides, so that no filter and no direction of a lookup shows.
 
+<!-- gallery: -->
 ${sections.join('\n\n')}
+<!-- :gallery -->
 `;
 }
 
@@ -61,7 +65,12 @@ export function galleryPages(root) {
   return { [`${root}/docs/gallery.md`]: galleryPage(record, readGallery(`${root}/bench/peers`)) };
 }
 
+/** The page, from the record. */
+export function writeGalleryPages(root) {
+  for (const [path, text] of Object.entries(galleryPages(root))) writeFileSync(path, text);
+}
+
 export function writeGallery(root, record) {
   writeFileSync(`${root}/bench/gallery.json`, `${JSON.stringify(record, null, 1)}\n`);
-  for (const [path, text] of Object.entries(galleryPages(root))) writeFileSync(path, text);
+  writeGalleryPages(root);
 }

@@ -10,12 +10,12 @@ import { dirname, join, resolve } from 'node:path';
 import { kIndices, kSize, points, readWork, writeEnvironment, writeScene, writeSheenTable } from './ball.mjs';
 import { bundle, open, pageOf } from './browser.mjs';
 import { drawGallery } from './gallery.mjs';
+import { writeGallery, writeGalleryPages } from './gallery_page.mjs';
 import { fragmentTimes, ourBound, sweepOf } from './fragments.mjs';
 import { openMaterialX, shadersOf } from './materialx.mjs';
 import { compile, costs, distance, driver, ourColors, ourModule, readManifest, run, sizes, versionOf } from './measure.mjs';
 import { writeSheet, writeSheets } from './pictures.mjs';
 import { writePages, writeRecord } from './report.mjs';
-import { writeGallery } from './gallery_page.mjs';
 import { asFor, kNotDrawn, kPeers, kWorks } from './works.mjs';
 
 const [root, lacquer, output = root, materialX = root] = process.argv.slice(2, 6).map((path) => resolve(path));
@@ -161,7 +161,10 @@ async function showGallery(there) {
 }
 
 async function main() {
-  if (!lacquer) return writePages(root);
+  if (!lacquer) {
+    writePages(root);
+    return writeGalleryPages(root);
+  }
   prepare();
   const there = await whoIsThere(), { peers } = there;
   await bundle(require('esbuild'), join(root, 'bench/peers/pages'), [...new Set(peers.map(({ page }) => page))], join(output, 'pages'));
