@@ -1,9 +1,11 @@
 // `node --test tests/peers/gallery_test.mjs`: the gallery's materials, its figures and its page.
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync, readdirSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { kEnvironment, writeScene } from '../../bench/peers/ball.mjs';
 import { effect, extensionsIn, readGallery, withoutExtensions } from '../../bench/peers/gallery.mjs';
 import { galleryPage, galleryPages } from '../../bench/peers/gallery_page.mjs';
 import { kGalleryPeers } from '../../bench/peers/works.mjs';
@@ -49,6 +51,23 @@ test('an extension goes wherever it stands, and leaves nothing empty', () => {
   assert.deepEqual(extensionsIn(material).sort(), ['A', 'B', 'C']);
   assert.deepEqual(withoutExtensions(material, ['B']), { extensions: { A: { y: [{}] }, C: {} } });
   assert.deepEqual(withoutExtensions(material, ['A', 'C']), {});
+});
+
+test('what lets light through has a wall behind it, and pictures lie beside the file', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'lacquer-peers-'));
+  const scene = (name) => JSON.parse(readFileSync(writeScene(folder, entries.find((each) => each.name === name).work), 'utf8'));
+  try {
+    const clear = scene('Transmission');
+    assert.deepEqual(clear.scenes[0].nodes, [0, 1, 2, 3]);
+    assert.deepEqual(clear.materials[1].pbrMetallicRoughness.baseColorFactor.slice(0, 3), Array(3).fill(kEnvironment));
+    assert.equal(clear.buffers[0].byteLength, statSync(join(folder, 'ball.bin')).size);
+    const tiles = scene('Texture transform');
+    assert.equal(tiles.meshes.length, 1);
+    assert.deepEqual(tiles.extensionsUsed.sort(), ['KHR_lights_punctual', 'KHR_texture_transform', 'NV_texture_swizzle']);
+    assert.equal(readFileSync(join(folder, 'image_0.png')).toString('latin1', 1, 4), 'PNG');
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
 });
 
 test('the effect of an extension is compared, not what pictures differ by without it', () => {
