@@ -10,6 +10,7 @@
 #include "bench/drivers.h"
 #include "bench/error.h"
 #include "bench/estimate.h"
+#include "bench/fragments.h"
 #include "bench/fronts.h"
 #include "bench/loops.h"
 #include "bench/optimize.h"
@@ -48,6 +49,8 @@ int run(int argc, char** argv) {
     return lacquer::bench::repeat(argv[2], std::strtoul(argv[3], nullptr, 10));
   if (argc > 2 && std::string_view(argv[1]) == "drivers")
     return lacquer::bench::printDriverTimes({argv + 2, argv + argc});
+  if (argc == 3 && std::string_view(argv[1]) == "fragments")
+    return lacquer::bench::printFragmentTimes(argv[2]);
   for (const Verb& verb : kVerbs) {
     if (argc == 2 && verb.name == argv[1]) return verb.run();
   }

@@ -83,6 +83,7 @@ async function makePage() {
   });
   const inScript = (text) => text.replace(/<\/script/gi, '<\\/script');
   const samples = readdirSync(examples).filter((name) => name.endsWith('.gltf')).sort().map((name) => embedded(join(examples, name)));
+  samples.push(embedded(join(here, '../bench/peers/gallery.gltf')));
   const style = readFileSync(join(here, 'page/style.css'), 'utf8');
   const script = inScript(bundle.outputFiles[0].text);
   const parts = {

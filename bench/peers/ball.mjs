@@ -15,7 +15,9 @@ const kFieldOfView = Math.PI / 6;
 const kDistance = 1.05 / Math.sin(kFieldOfView / 2);
 
 const normalize = (v) => v.map((x) => x / Math.hypot(...v));
-const kToLight = normalize([0.4, 0.5, 0.77]);
+export const kToLight = normalize([0.4, 0.5, 0.77]);
+/** Where the camera stands. */
+export const kViewer = [0, 0, kDistance];
 
 /** What the images of the works hold, one colour each: every filter gives it back. */
 const kTexels = {
@@ -123,10 +125,31 @@ function lightRotation() {
   return normalize([-y, x, 0, 1 + z]);
 }
 
+/** What lets light through. */
+const kClear = ['KHR_materials_transmission', 'ADOBE_materials_thin_transparency'];
+
+/** A wall behind the ball that shines as the environment does, so that who looks through the ball sees what is around it. */
+function addWall(scene, buffer) {
+  const corners = [-1, -1, 1, -1, 1, 1, -1, -1, 1, 1, -1, 1].map((x) => 30 * x);
+  const bytes = Buffer.from(Float32Array.from(corners.flatMap((x, i) => (i % 2 ? [x, -2] : [x]))).buffer);
+  const view = scene.bufferViews.length, accessor = scene.accessors.length;
+  scene.bufferViews.push({ buffer: 0, byteOffset: buffer.length, byteLength: bytes.length, target: 34962 });
+  scene.accessors.push({ bufferView: view, componentType: 5126, count: 6, type: 'VEC3', min: [-30, -30, -2], max: [30, 30, -2] });
+  scene.buffers[0].byteLength += bytes.length;
+  const shines = { baseColorFactor: [kEnvironment, kEnvironment, kEnvironment, 1] };
+  scene.materials = [...scene.materials, { name: 'wall', pbrMetallicRoughness: shines, extensions: { KHR_materials_unlit: {} } }];
+  scene.meshes.push({ primitives: [{ attributes: { POSITION: accessor }, material: scene.materials.length - 1 }] });
+  scene.nodes.push({ mesh: 1 });
+  scene.scenes[0].nodes.push(scene.nodes.length - 1);
+  scene.extensionsUsed = [...new Set([...scene.extensionsUsed, 'KHR_materials_unlit'])];
+  return Buffer.concat([buffer, bytes]);
+}
+
 /** Writes the ball in the material of a work; its path. Materials may be exchanged before: see works.mjs. */
 export function writeScene(folder, work) {
   mkdirSync(folder, { recursive: true });
-  const { gltf, bytes, primitive } = mesh(Object.keys(work.meshes[0].primitives[0].attributes));
+  const made = mesh(Object.keys(work.meshes[0].primitives[0].attributes)), { gltf, primitive } = made;
+  let { bytes } = made;
   const scene = {
     ...work, ...gltf,
     extensionsUsed: [...(work.extensionsUsed ?? []), 'KHR_lights_punctual'],
@@ -140,8 +163,15 @@ export function writeScene(folder, work) {
     meshes: [{ primitives: [{ ...primitive, material: 0 }] }],
     cameras: [{ type: 'perspective', perspective: { yfov: kFieldOfView, aspectRatio: 1, znear: 0.1, zfar: 100 } }],
   };
+  if (work.wall && kClear.some((name) => work.extensionsUsed.includes(name))) bytes = addWall(scene, bytes);
+  delete scene.wall;
   writeFileSync(join(folder, 'ball.bin'), bytes);
-  for (const { uri } of work.images ?? []) writeFileSync(join(folder, uri), png(4, 4, () => kTexels[uri]));
+  for (const [i, { uri }] of (work.images ?? []).entries()) {
+    // What is in the file itself lies beside it, too, under the name that a MaterialX document of it says.
+    const inside = /^data:image\/png;base64,(.*)$/.exec(uri);
+    if (inside) writeFileSync(join(folder, `image_${i}.png`), Buffer.from(inside[1], 'base64'));
+    else writeFileSync(join(folder, uri), png(4, 4, () => kTexels[uri]));
+  }
   writeFileSync(join(folder, 'ball.gltf'), JSON.stringify(scene, null, 1));
   return join(folder, 'ball.gltf');
 }

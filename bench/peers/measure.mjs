@@ -44,6 +44,9 @@ export function ourModule(lacquer, file, ibl, folder) {
   return join(folder, 'spirv', modules[0]);
 }
 
+/** What `lacquer gen` says of what it wrote into a folder. */
+export const readManifest = (folder) => JSON.parse(readFileSync(join(folder, 'manifest.json'), 'utf8'));
+
 /** Of modules, in their order: their bytes, and milliseconds in which the driver makes a pipeline of each. */
 export function sizes(bench, modules) {
   const times = JSON.parse(run(bench, 'drivers', ...modules));

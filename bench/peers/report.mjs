@@ -18,12 +18,12 @@ function best(work, results) {
 }
 
 /** The record as it is written: versions, and for each work the best, our sizes and what each peer needs. */
-export function record({ versions, driver, results, ours }) {
+export function record({ versions, driver, device, results, ours }) {
   const works = {};
   for (const work of kWorks) {
     works[work.name] = { best: best(work, results[work.name]), ours: ours[work.name], peers: results[work.name] };
   }
-  return { driver, versions, works };
+  return { driver, device, versions, works };
 }
 
 function table(head, rows) {
@@ -46,9 +46,11 @@ function costTable(record, ours) {
   }));
 }
 
-function sizeTable(record) {
+const shownSize = ({ bytes, driver_ms }) => `${(bytes / 1000).toFixed(1)} / ${driver_ms.toFixed(1)}`;
+const shownTime = ({ fragment_ns }) => (fragment_ns < 100 ? fragment_ns.toFixed(1) : fragment_ns.toFixed(0));
+
+function ownTable(record, shown) {
   const peers = measuredPeers(record);
-  const shown = ({ bytes, driver_ms }) => `${(bytes / 1000).toFixed(1)} / ${driver_ms.toFixed(1)}`;
   const cell = (work, peer) => {
     const got = record.works[work.name].peers[peer.name];
     if (!got) return 'failed';
@@ -93,7 +95,11 @@ ${costTable(record, ours)}
 Kilobytes of the fragment stage's SPIR-V without names / milliseconds of processor time in which the driver makes a
 pipeline of it:
 
-${sizeTable(record)}
+${ownTable(record, shownSize)}
+
+Nanoseconds of processor time that a fragment takes on ${record.device}:
+
+${ownTable(record, shownTime)}
 
 ${peerTable(record)}
 

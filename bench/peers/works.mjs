@@ -86,5 +86,8 @@ export const kPeers = [
   },
 ];
 
+/** Those of the gallery: MaterialX's two ways to an environment show the same one that is alike from all sides. */
+export const kGalleryPeers = kPeers.filter(({ environment }) => environment !== 'sampled');
+
 /** The work as a peer gets it. */
 export const asFor = (peer, file, work) => (peer.fallback?.[file] ?? peer.adapt ?? ((same) => same))(work);

@@ -33,11 +33,11 @@ test('numbers become constants, textures and what the application sets stay unif
 /** Figures that only tell peers apart. */
 function measured(peers) {
   const gpu = { instructions: 10, inverse_throughput: 20 }, colors = { mean: 0.1, max: 0.2, mean_of_ours: 0.3 };
-  const each = Object.fromEntries(peers.map(({ name }) => [name, { navi21: gpu, colors, bytes: 12345, driver_ms: 6.25 }]));
+  const each = Object.fromEntries(peers.map(({ name }) => [name, { navi21: gpu, colors, bytes: 12345, driver_ms: 6.25, fragment_ns: 432.1 }]));
   return record({
     driver: 'Mesa', versions: Object.fromEntries(peers.map((peer) => [peer.package, '1.2'])),
     results: Object.fromEntries(kWorks.map(({ name }) => [name, each])),
-    ours: Object.fromEntries(kWorks.map(({ name }) => [name, { bytes: 6789, driver_ms: 3 }])),
+    ours: Object.fromEntries(kWorks.map(({ name }) => [name, { bytes: 6789, driver_ms: 3, fragment_ns: 98.76 }])), device: 'llvmpipe',
   });
 }
 
@@ -49,6 +49,8 @@ test('where MaterialX is not there, the tables go without it', () => {
   const without = section(measured(others), ours);
   assert.doesNotMatch(without, /MaterialX|undefined|failed/);
   assert.match(without, /\| W3 \| \*\*6.8 \/ 3.0\*\* \| \(12.3 \/ 6.3\) \| \(12.3 \/ 6.3\) \| \(12.3 \/ 6.3\) \| 12.3 \/ 6.3 \|\n/);
+  assert.match(without, /on llvmpipe:/);
+  assert.match(without, /\| W3 \| \*\*98.8\*\* \| \(432\) \| \(432\) \| \(432\) \| 432 \|\n/);
   assert.match(without, /\| W3 \| \*\*5 \/ 5\*\* \| \(10 \/ 20\) \| \(10 \/ 20\) \| \(10 \/ 20\) \| 10 \/ 20 \| 50 % \/ 25 % \|/);
 });
 

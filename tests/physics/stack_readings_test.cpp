@@ -377,6 +377,15 @@ TEST(StackReadings, E31PaneInAWhiteRoom) {
   for (const double x : lacquerWhiteRoom(pane, 0.5)) EXPECT_NEAR(x, 1, 0.01);
 }
 
+// What a body absorbs is missing from the light of all sides that comes through it, as from a lamp's.
+TEST(StackReadings, BodyBehindALeafInAWhiteRoom) {
+  NEEDS("KHR_materials_diffuse_transmission", "KHR_materials_volume");
+  const StackMaterial m =
+      paint(0.4, R"({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.6},
+      "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": [0.9, 0.5, 0.3]}})");
+  EXPECT_LT(farthest(stackWhiteRoom(readStack(m.json), 0.5, splitSum), lacquerWhiteRoom(m, 0.5)), 1e-5);
+}
+
 TEST(StackReadings, E32OppositeLightIsFinite) {
   NEEDS("KHR_materials_transmission");
   const Sample s = sampleOf(tilted(0.7, 0.3), tilted(-0.7, 0.3 + 3.141592653589793));

@@ -298,6 +298,38 @@ TEST(VulkanRun, Times) {
   EXPECT_EQ(wrong.error()[0].code, "vulkan-interface");
 }
 
+/// A shader with blocks and textures of its own is timed, and with them all alone.
+TEST(VulkanRun, TimesWithDescriptors) {
+  NEEDS_DEVICE();
+  Sweep sweep;
+  sweep.fragment = compiled(
+      "layout(set = 0, binding = 1) uniform Count { int count; };\n"
+      "layout(set = 2, binding = 0) uniform sampler2D plane;\nlayout(set = 2, binding = 3) uniform "
+      "samplerCube cube;\n"
+      "layout(set = 0, binding = 0) uniform sampler3D volume;\n"
+      "layout(location = 0) in vec2 a;\nlayout(location = 0) out vec4 c;\n"
+      "void main() {\n  c = texture(plane, a) + texture(cube, a.xyy) + texture(volume, a.xyy);\n"
+      "  for (int i = 0; i < count; ++i) c = sin(c + a.xyxy);\n}\n");
+  sweep.inputs = {{2, {0, 0, 1, 0, 0, 1}}};
+  const auto one = texels({{0.5F, 0.5F, 0.5F, 1}});
+  sweep.textures = {{{2, 0}, {2, 0}, Shape::Plane, false, 1, 1, one},
+                    {{2, 3}, {2, 3}, Shape::Cube, false, 1, 1, one},
+                    {{0, 0}, {0, 0}, Shape::Volume, false, 1, 1, one}};
+  Sweep many = sweep;
+  sweep.blocks = {{{0, 1}, false, {0, 0, 0, 0}}};
+  many.blocks = {{{0, 1}, false, {200, 0, 0, 0}}};
+  const Result<std::vector<double>> times = device()->time({sweep, many}, 2);
+  if (!times && times.error()[0].code == "vulkan-unsupported")
+    GTEST_SKIP() << "NOT TESTED: " << device()->name() << " is no processor";
+  ASSERT_TRUE(times) << format(times.error()[0]);
+  // The count arrives: two hundred sines of four numbers each are not nothing.
+  EXPECT_GT((*times)[1], 2 * (*times)[0]);
+  sweep.textures.pop_back();
+  const Result<std::vector<double>> wrong = device()->time({sweep}, 1);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(format(wrong.error()[0]), "error: nothing is given for set 0, binding 0 [vulkan-interface]");
+}
+
 TEST(VulkanRun, NoPointsNoWork) {
   NEEDS_DEVICE();
   Work work;

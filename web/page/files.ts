@@ -9,6 +9,9 @@ import type { Page } from './main';
 import { inputFrom, shared } from './share';
 import { kPictures } from './textures';
 
+/** An address with the names of a file that the page has and of one of its materials: #open=FILE/MATERIAL. */
+const kNamed = '#open=';
+
 /** Milliseconds after an edit until its draft is kept. */
 const kRest = 400;
 
@@ -18,6 +21,8 @@ export class Files {
   /** The state of the document that the draft has; -1 for none. */
   private kept = -1;
   private writing: Promise<void> = Promise.resolve();
+  /** A file that came with the page, and what says in the list of files that it is shown. */
+  held: (name: string) => { input: Input; shown: () => void } | null = () => null;
 
   constructor(private readonly page: Page) {
     const picker = byId<HTMLInputElement>('picker');
@@ -154,12 +159,26 @@ export class Files {
     if (location.hash === this.address) return false;
     this.address = location.hash;
     try {
+      if (location.hash.startsWith(kNamed)) return await this.openNamed(decodeURIComponent(location.hash.slice(kNamed.length)));
       const input = await inputFrom(location.hash);
       return input !== null && (await this.replace(input));
     } catch (error) {
       this.page.fail(error);
       return false;
     }
+  }
+
+  private async openNamed(names: string): Promise<boolean> {
+    const { page } = this;
+    const [file] = names.split('/', 1), material = names.slice(file.length + 1);
+    const held = this.held(file);
+    if (!held) throw new Error(`the address opens ${file}, and the page has no such file`);
+    if (!(await this.replace(held.input))) return false;
+    held.shown();
+    const index = material === '' ? 0 : page.document!.names.indexOf(material);
+    if (index < 0) throw new Error(`the address opens the material ${material}, and ${file} has none of this name`);
+    page.choose(index);
+    return true;
   }
 
   // ---- drafts

@@ -736,6 +736,10 @@ async function start(): Promise<void> {
     if (!opened) choice.value = chosen;
     chosen = choice.value;
   }));
+  page.files.held = (name) => {
+    const found = all.findIndex((each) => each.name === name);
+    return found < 0 ? null : { input: inputOf(all[found]), shown: () => (choice.value = chosen = String(found)) };
+  };
   if (all.length > 0) page.open(inputOf(all[0]));
   await page.files.openAddress();
   await page.files.begin();

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { unzipSync } from 'fflate';
 import { lacquer, read } from './native.mjs';
-import { begin, drop, end, folder, open, set } from './page.mjs';
+import { begin, drop, end, folder, kSmall, open, set } from './page.mjs';
 
 before(begin);
 after(end);
@@ -126,3 +126,22 @@ test("a material with its graph and nodes is shared by the page's address, witho
       assert.equal(await page.textContent('#id'), shown);
     }
   }));
+
+test('an address opens every material of the gallery', () =>
+  open(['examples/core.gltf'], async (page) => {
+    const { materials } = JSON.parse(read('bench/peers/gallery.gltf'));
+    assert.ok(materials.length >= 40);
+    for (const { name } of materials) {
+      await page.evaluate((to) => (location.hash = to), `#open=gallery.gltf/${encodeURIComponent(name)}`);
+      await page.waitForFunction((wanted) => {
+        const { document: of } = window.lacquerPage;
+        return of.file.name === 'gallery.gltf' && of.names[of.material] === wanted;
+      }, name);
+      assert.equal(await page.textContent('#status'), '', name);
+    }
+    assert.equal(await page.evaluate(() => document.getElementById('sample').selectedOptions[0].text), 'gallery.gltf');
+    for (const [bad, says] of [['#open=car.gltf/x', /the page has no such file/], ['#open=gallery.gltf/x', /gallery.gltf has none of this name/]]) {
+      await page.evaluate((to) => (location.hash = to), bad);
+      await page.waitForFunction((source) => new RegExp(source).test(document.getElementById('status').textContent), says.source);
+    }
+  }, { size: kSmall }));

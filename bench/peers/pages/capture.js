@@ -19,6 +19,30 @@ wrap('attachShader', (gl, program, shader) => {
   if (gl.getShaderParameter(shader, gl.SHADER_TYPE) === gl.FRAGMENT_SHADER) fragmentOf.set(program, shader);
 });
 
+/** What is bound when a program draws: its lone uniforms by their paths, and the bytes of its blocks by their names. */
+function boundTo(gl, program) {
+  const uniforms = {}, blocks = {};
+  for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++i) {
+    const { name, size } = gl.getActiveUniform(program, i), bare = name.replace(/\[0\]$/, '');
+    for (let k = 0; k < size; ++k) {
+      const path = bare === name ? name : `${bare}[${k}]`, location = gl.getUniformLocation(program, path);
+      const value = location && gl.getUniform(program, location);
+      if (value !== null) uniforms[path] = typeof value === 'object' ? [...value].map(Number) : Number(value);
+    }
+  }
+  for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS); ++i) {
+    const place = gl.getActiveUniformBlockParameter(program, i, gl.UNIFORM_BLOCK_BINDING);
+    const size = gl.getActiveUniformBlockParameter(program, i, gl.UNIFORM_BLOCK_DATA_SIZE);
+    const buffer = gl.getIndexedParameter(gl.UNIFORM_BUFFER_BINDING, place), was = gl.getParameter(gl.UNIFORM_BUFFER_BINDING);
+    const bytes = new Uint8Array(size);
+    gl.bindBuffer(gl.UNIFORM_BUFFER, buffer);
+    gl.getBufferSubData(gl.UNIFORM_BUFFER, gl.getIndexedParameter(gl.UNIFORM_BUFFER_START, place), bytes);
+    gl.bindBuffer(gl.UNIFORM_BUFFER, was);
+    blocks[gl.getActiveUniformBlockName(program, i)] = [...bytes];
+  }
+  return { uniforms, blocks };
+}
+
 /** A picture in 32-bit floats with depth, in place of what is bound. */
 function floatTarget(gl, size) {
   if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('the browser draws no floats');
@@ -60,8 +84,9 @@ function drawAside(gl, draw) {
 
 wrap('drawElements', (gl, ...args) => {
   if (!wanted || args[1] !== wanted.indices) return;
-  const { found } = wanted;
-  found.source = sources.get(fragmentOf.get(gl.getParameter(gl.CURRENT_PROGRAM)));
+  const { found } = wanted, program = gl.getParameter(gl.CURRENT_PROGRAM);
+  found.source = sources.get(fragmentOf.get(program));
+  found.bound = boundTo(gl, program);
   found.pixels = drawAside(gl, () => original.drawElements.apply(gl, args));
   found.error = gl.getError();
 });
@@ -74,7 +99,7 @@ export async function capture({ size, indices }, draw) {
   wanted = null;
   if (!found.source) throw new Error('nothing drew the ball');
   if (found.error) throw new Error(`WebGL error ${found.error}`);
-  return { source: found.source, pixels: [...found.pixels] };
+  return { source: found.source, bound: found.bound, pixels: [...found.pixels] };
 }
 
 /** A canvas of the picture's size on the page. */

@@ -52,6 +52,13 @@ async function textureUniforms(scene, textures) {
   return uniforms;
 }
 
+/** MaterialX counts v upwards, glTF downwards. */
+function upwards(uv) {
+  const turned = uv.clone();
+  for (let i = 0; i < turned.count; ++i) turned.setY(i, 1 - turned.getY(i));
+  return turned;
+}
+
 const kAttributes = { i_position: 'position', i_normal: 'normal', i_tangent: 'tangent', i_texcoord_0: 'uv' };
 const withoutVersion = (text) => text.replace(/^#version 300 es\n/, '');
 
@@ -61,6 +68,7 @@ window.draw = async (request) => {
   const ball = file.scene.getObjectByProperty('isMesh', true), [camera] = file.cameras;
   file.scene.updateMatrixWorld(true);
   for (const [name, attribute] of Object.entries(kAttributes)) ball.geometry.setAttribute(name, ball.geometry.getAttribute(attribute));
+  ball.geometry.setAttribute('i_texcoord_0', upwards(ball.geometry.getAttribute('uv')));
   const uniforms = {
     ...viewUniforms(camera), ...lightUniforms(file.scene), ...(await textureUniforms(request.scene, request.shaders.textures)),
     ...(request.environment ? await environmentUniforms() : {}),

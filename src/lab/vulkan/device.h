@@ -88,6 +88,11 @@ public:
               VkFormat format = kFormat, bool volume = false);
   VkImageView view(const Image& image, uint32_t first_layer, Shape shape, uint32_t layers);
   VkSampler sampler(const Texture& texture);
+  /// Fills an image, made to be copied to and sampled, which shaders read afterwards.
+  template <class T>
+  void upload(const std::vector<T>& texels, const Image& image) {
+    upload(texels.data(), texels.size() * sizeof(T), image);
+  }
   VkShaderModule module(const std::vector<uint32_t>& words);
 
   /// Records, submits and waits.
@@ -95,6 +100,7 @@ public:
   void toLayout(VkCommandBuffer commands, const Image& image, VkImageLayout from, VkImageLayout to) const;
 
 private:
+  void upload(const void* texels, size_t size, const Image& image);
   VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags);
 
   const Device::State& device_;

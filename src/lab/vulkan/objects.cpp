@@ -1,6 +1,8 @@
 #ifdef LACQUER_VULKAN
 #include <fmt/format.h>
 
+#include <cstring>
+
 #include "vulkan/device.h"
 
 namespace lacquer::vulkan {
@@ -145,6 +147,24 @@ VkSampler Objects::sampler(const Texture& texture) {
     atEnd([this, sampler] { device_.vk.DestroySampler(device_.handle, sampler, nullptr); });
   }
   return sampler;
+}
+
+void Objects::upload(const void* texels, size_t size, const Image& image) {
+  if (!good()) return;
+  Objects mine(device_);  // the copy is not needed afterwards
+  const Buffer staging = mine.buffer(size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  if (mine.good()) std::memcpy(staging.bytes, texels, size);
+  mine.submit([&](VkCommandBuffer commands) {
+    mine.toLayout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {image.aspect, 0, 0, image.layers};
+    copy.imageExtent = {image.width, image.height, 1};
+    device_.vk.CmdCopyBufferToImage(commands, staging.handle, image.handle,
+                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    mine.toLayout(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  });
+  take(mine.wrong());
 }
 
 VkShaderModule Objects::module(const std::vector<uint32_t>& words) {

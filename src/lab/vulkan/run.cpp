@@ -74,8 +74,6 @@ private:
   Chunk split(size_t first) const;
   bool together(size_t a, size_t b) const;
   std::vector<Texel> colorsAt(size_t point) const;
-  template <class T>
-  void upload(const std::vector<T>& texels, const Image& image, Objects& objects) const;
   Pixel pixelOf(size_t i) const;
   void corner(size_t point, const Pixel& pixel, const std::array<float, 2>& reach, unsigned char* to) const;
   Buffer vertices(Objects& objects, const Chunk& chunk) const;
@@ -102,26 +100,6 @@ private:
   std::vector<Image> targets_;
   VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
-
-template <class T>
-void Running::upload(const std::vector<T>& texels, const Image& image, Objects& objects) const {
-  if (!objects.good()) return;
-  Objects mine(device_);  // the copy is not needed afterwards
-  const size_t size = texels.size() * sizeof(T);
-  const Buffer staging = mine.buffer(size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  if (mine.good()) std::memcpy(staging.bytes, texels.data(), size);
-  mine.submit([&](VkCommandBuffer commands) {
-    mine.toLayout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    VkBufferImageCopy copy{};
-    copy.imageSubresource = {image.aspect, 0, 0, image.layers};
-    copy.imageExtent = {image.width, image.height, 1};
-    vk_.CmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                             &copy);
-    mine.toLayout(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-  });
-  objects.take(mine.wrong());
-}
 
 /// What all chunks share: the targets and the textures.
 void Running::prepare() {
@@ -158,9 +136,9 @@ void Running::prepare() {
         texture.width, texture.height, layers, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
         texture.compares ? kDepthFormat : kFormat, texture.shape == Shape::Volume);
     if (texture.compares) {
-      upload(depthsOf(*texture.texels), image, objects_);
+      objects_.upload(depthsOf(*texture.texels), image);
     } else {
-      upload(*texture.texels, image, objects_);
+      objects_.upload(*texture.texels, image);
     }
     views_.back() = objects_.view(image, 0, texture.shape, layers);
   }
@@ -302,7 +280,7 @@ std::vector<std::vector<VkImageView>> Running::variedViews(Objects& objects, con
     const Image image = objects.image(1, 1, static_cast<uint32_t>(texels.size()),
                                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                       compares ? kDepthFormat : kFormat, false);
-    compares ? upload(depthsOf(texels), image, objects) : upload(texels, image, objects);
+    compares ? objects.upload(depthsOf(texels), image) : objects.upload(texels, image);
     for (size_t v = 0; v < views.size(); ++v)
       views[v].push_back(objects.view(image, static_cast<uint32_t>(layers * v), varied_[c]->shape, layers));
   }

@@ -78,11 +78,14 @@ struct Outcome {
   std::vector<bool> discarded;              ///< by point
 };
 
-/// A fragment shader without descriptors to be timed: each pixel of a square is one invocation.
+/// A fragment shader to be timed: each pixel of a square is one invocation.
 struct Sweep {
   std::vector<uint32_t> fragment;  ///< SPIR-V
   /// At three corners, upper left, upper right and lower left; affine between them.
   std::vector<Varying> inputs;
+  /// What all pixels share. A cube map has one texel.
+  std::vector<UniformBlock> blocks = {};
+  std::vector<Texture> textures = {};
 };
 
 /// A device with a graphics queue, open for the rest of the process. Not to be used by two threads at once.

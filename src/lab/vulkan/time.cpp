@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "check/reflect.h"
+#include "vulkan/bound.h"
 #include "vulkan/device.h"
 #include "vulkan/passthrough.h"
 #include "vulkan/pipeline.h"
@@ -53,13 +54,15 @@ public:
       : device_(device),
         fragment_(fragment),
         objects_(objects),
-        pipeline_(device, fragment_, objects, kSweepSide) {}
+        pipeline_(device, fragment_, objects, kSweepSide),
+        bound_(device, pipeline_, objects) {}
 
   void make(const Sweep& sweep, VkImageView view) {
     if (!fits(sweep)) return;
     const Result<std::vector<uint32_t>> vertex = passthroughVertex(fragment_);
     if (!vertex) return objects_.take(vertex.error());
     pipeline_.make(*vertex, sweep.fragment, {});
+    bound_.make(sweep.blocks, sweep.textures);
     triangle_ = triangle(sweep, pipeline_.vertexStride(), objects_);
     VkFramebufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
@@ -90,8 +93,7 @@ public:
 
 private:
   bool fits(const Sweep& sweep) {
-    bool fits = pipeline_.outputs() == 1 && fragment_.bindings.empty() &&
-                fragment_.inputs.size() == sweep.inputs.size();
+    bool fits = pipeline_.outputs() == 1 && fragment_.inputs.size() == sweep.inputs.size();
     for (size_t i = 0; fits && i < sweep.inputs.size(); ++i) {
       const check::Slot& slot = fragment_.inputs[i];
       const Varying& input = sweep.inputs[i];
@@ -100,7 +102,7 @@ private:
     }
     if (!fits) {
       objects_.fail("vulkan-interface",
-                    "a shader to be timed has one output, no descriptors, and three values for each input");
+                    "a shader to be timed has one output, and three values for each input");
     }
     return fits;
   }
@@ -117,6 +119,7 @@ private:
     const RunFunctions& vk = device_.vk;
     vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle());
+    bound_.bind(commands);
     const VkDeviceSize zero = 0;
     vk.CmdBindVertexBuffers(commands, 0, 1, &triangle_.handle, &zero);
     const VkRect2D all{{0, 0}, {kSweepSide, kSweepSide}};
@@ -129,6 +132,7 @@ private:
   check::Interface fragment_;
   Objects& objects_;
   Pipeline pipeline_;
+  Bound bound_;
   Buffer triangle_;
   VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
