@@ -149,7 +149,8 @@ TEST(Physical, IsExactForASmoothCoat) {
       const std::vector<double> around = transmissions("physical", Light::Environment, queries);
       const std::vector<double> emitted = transmissions("physical", Light::Emission, queries);
       for (size_t i = 0; i < queries.size(); ++i) {
-        const auto& [coating, view, light] = queries[i];
+        const Coating& coating = queries[i].coating;
+        const double view = queries[i].cosine_view, light = queries[i].cosine_light;
         const auto where = [&] {
           return fmt::format("{} {} {} {} {}", ior, tint, coating.albedo, view, light);
         };
