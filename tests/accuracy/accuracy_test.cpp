@@ -280,10 +280,10 @@ TEST(OpenPbrLobe, HazeIsABlendOfSurfaces) {
         wide.roughness = 0.25 + 0.6 * 0.75;
         hazy.haze = 0.35, hazy.spread = 0.6;
         none.haze = 0.35, none.spread = 0;
-        const Colors cores = openPbrDrawn(core, all, false, white);
-        const Colors blend = mixed(cores, openPbrDrawn(wide, all, false, white), 0.35);
-        expectNear(openPbrDrawn(hazy, all, false, white), blend, 1e-6, "haze");
-        expectNear(openPbrDrawn(none, all, false, white), cores, 1e-6, "no spread");
+        const Colors cores = openPbrDrawn(core, all, "materialx", white);
+        const Colors blend = mixed(cores, openPbrDrawn(wide, all, "materialx", white), 0.35);
+        expectNear(openPbrDrawn(hazy, all, "materialx", white), blend, 1e-6, "haze");
+        expectNear(openPbrDrawn(none, all, "materialx", white), cores, 1e-6, "no spread");
       }
     }
   }
@@ -299,8 +299,24 @@ TEST(OpenPbrLobe, HazeIsABlendOfSurfacesByGltf) {
       wide.roughness = 0.25 + 0.6 * 0.75;
       hazy.haze = 0.35, hazy.spread = 0.6;
       const Colors blend =
-          mixed(openPbrDrawn(core, all, true, white), openPbrDrawn(wide, all, true, white), 0.35);
-      expectNear(openPbrDrawn(hazy, all, true, white), blend, white ? 0.004 : 1e-6, "haze");
+          mixed(openPbrDrawn(core, all, "khr", white), openPbrDrawn(wide, all, "khr", white), 0.35);
+      expectNear(openPbrDrawn(hazy, all, "khr", white), blend, white ? 0.004 : 1e-6, "haze");
+    }
+  }
+}
+
+// A rough coat roughens both, where it does.
+TEST(OpenPbrLobe, ARoughCoatRoughensTheHaze) {
+  const std::vector<Lamp> all = lamps(60);
+  for (const char* profile : {"materialx", "khr", "openpbr"}) {
+    for (const bool metal : {false, true}) {
+      OpenPbr core = painted(metal);
+      core.coat = 0.7;
+      OpenPbr wide = core, hazy = core;
+      wide.roughness = 0.25 + 0.6 * 0.75;
+      hazy.haze = 0.35, hazy.spread = 0.6;
+      const Colors blend = mixed(openPbrDrawn(core, all, profile), openPbrDrawn(wide, all, profile), 0.35);
+      expectNear(openPbrDrawn(hazy, all, profile), blend, 1e-6, profile);
     }
   }
 }
@@ -310,13 +326,13 @@ TEST(OpenPbrLobe, RetroreflectivityIsTheMirroredView) {
   const std::vector<Lamp> all = lamps(60);
   std::vector<Lamp> mirrored = all;
   for (Lamp& lamp : mirrored) lamp.v = {-lamp.v[0], -lamp.v[1], lamp.v[2]};
-  for (const bool gltf : {false, true}) {
+  for (const char* profile : {"materialx", "khr"}) {
     OpenPbr core = painted(true);
     core.haze = 0.5;
     OpenPbr back = core;
     back.retroreflectivity = 0.3;
-    const Colors blend = mixed(openPbrDrawn(core, all, gltf), openPbrDrawn(core, mirrored, gltf), 0.3);
-    expectNear(openPbrDrawn(back, all, gltf), blend, 1e-6, "sent back");
+    const Colors blend = mixed(openPbrDrawn(core, all, profile), openPbrDrawn(core, mirrored, profile), 0.3);
+    expectNear(openPbrDrawn(back, all, profile), blend, 1e-6, "sent back");
   }
 }
 
@@ -324,17 +340,17 @@ TEST(OpenPbrLobe, RetroreflectivityIsTheMirroredView) {
 // and of a colour that stays below 1 the weight is all there is.
 TEST(OpenPbrLobe, WeightsOfMetalsAreCutOffBehindTheColor) {
   std::vector<Lamp> straight = {{{0, 0, 1}, {0, 0, 1}}};
-  for (const bool gltf : {false, true}) {
+  for (const char* profile : {"materialx", "khr"}) {
     OpenPbr plain = painted(true);
     plain.anisotropy = 0;
     OpenPbr bright = plain;
     bright.weight = 1.5;
-    const Colors a = openPbrDrawn(plain, straight, gltf), b = openPbrDrawn(bright, straight, gltf);
+    const Colors a = openPbrDrawn(plain, straight, profile), b = openPbrDrawn(bright, straight, profile);
     ASSERT_EQ(a.size() + b.size(), 2);
     // 0.8 becomes 1 and not 1.2; what bounces more than once is a few percent of MaterialX's.
-    EXPECT_NEAR(b[0][0] / a[0][0], 1 / 0.8, 0.02) << gltf;
-    EXPECT_NEAR(b[0][1] / a[0][1], 1.5, 0.02) << gltf;
-    EXPECT_NEAR(b[0][2] / a[0][2], 1.5, 0.02) << gltf;
+    EXPECT_NEAR(b[0][0] / a[0][0], 1 / 0.8, 0.02) << profile;
+    EXPECT_NEAR(b[0][1] / a[0][1], 1.5, 0.02) << profile;
+    EXPECT_NEAR(b[0][2] / a[0][2], 1.5, 0.02) << profile;
   }
 }
 

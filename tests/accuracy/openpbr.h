@@ -15,6 +15,7 @@ struct OpenPbr {
   bool metal = false;
   double weight = 1, roughness = 0.3, anisotropy = 0, haze = 0, spread = 0.3, retroreflectivity = 0;
   std::array<double, 3> base{0, 0, 0}, color{1, 1, 1};
+  double coat = 0;  ///< of roughness 0.4, which darkens nothing
 };
 
 /// A lamp of radiance 1 about the normal z, with a tangent along x.
@@ -30,10 +31,10 @@ enum class Masking {
 /// BSDF times the light's cosine, without what bounces more than once.
 std::array<double, 3> openPbrLobe(const OpenPbr& surface, const Lamp& lamp, Masking masking);
 
-/// Colours by MaterialX's formulas, or translated to glTF's properties; with `white`, of white surroundings
-/// and no lamp.
+/// Colours by MaterialX's formulas (`materialx`), or translated to glTF's properties, by that profile; with
+/// `white`, of white surroundings and no lamp.
 std::vector<std::array<double, 3>> openPbrDrawn(const OpenPbr& surface, const std::vector<Lamp>& lamps,
-                                                bool gltf, bool white = false);
+                                                const char* profile, bool white = false);
 
 std::string openPbrTable();
 
