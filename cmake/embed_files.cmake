@@ -11,9 +11,11 @@ foreach(file IN LISTS FILES)
   file(READ "${file}" hex HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
   if(WITHOUT_COMMENTS)
-    # The browser's module is sent, so it goes without: lines of nothing but a comment become empty, and all stays on its line.
+    # The browser's module is sent, so it goes without: lines of nothing but a comment become empty, no line is
+    # indented, and all stays on its line.
     # Doc lines begin with `///`.
     string(REGEX REPLACE "(0x0a,)(0x20,)*0x2f,0x2f,0x([13-9a-f][0-9a-f]|0[0-9b-f]|2[0-9a-e]),(0x([1-9a-f][0-9a-f]|0[0-9b-f]),)*" "\\1" bytes "${bytes}")
+    string(REGEX REPLACE "(0x0a,)(0x20,)+" "\\1" bytes "${bytes}")
   endif()
   string(APPEND text "static const unsigned char k${index}[] = {${bytes}0};\n")
   string(APPEND rows "    {\"${place}\", {reinterpret_cast<const char*>(k${index}), sizeof(k${index}) - 1}},\n")

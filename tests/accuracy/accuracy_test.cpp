@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "accuracy/antialiasing.h"
+#include "accuracy/openpbr.h"
 #include "accuracy/profiles.h"
 
 namespace lacquer::accuracy {
@@ -148,7 +149,8 @@ TEST(Physical, IsExactForASmoothCoat) {
       const std::vector<double> around = transmissions("physical", Light::Environment, queries);
       const std::vector<double> emitted = transmissions("physical", Light::Emission, queries);
       for (size_t i = 0; i < queries.size(); ++i) {
-        const auto& [coating, view, light] = queries[i];
+        const Coating& coating = queries[i].coating;
+        const double view = queries[i].cosine_view, light = queries[i].cosine_light;
         const auto where = [&] {
           return fmt::format("{} {} {} {} {}", ior, tint, coating.albedo, view, light);
         };
@@ -235,6 +237,121 @@ TEST(Profiles, AtAnIorOfOne) {
   EXPECT_NEAR(one("openpbr", Light::Direct, query), 1, 1e-7);
   EXPECT_NEAR(one("openpbr", Light::Environment, query), 1, 1e-7);
   EXPECT_NEAR(one("khr", Light::Environment, query), 0.5625, 1e-12) << "the text's formula has changed";
+}
+
+using Colors = std::vector<std::array<double, 3>>;
+
+void expectNear(const Colors& a, const Colors& b, double within, const char* what) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  for (size_t i = 0; i < a.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(a[i][c], b[i][c], within * std::max(1.0, std::abs(b[i][c]))) << what << " " << i;
+    }
+  }
+}
+
+Colors mixed(const Colors& a, const Colors& b, double t) {
+  Colors result = a;
+  for (size_t i = 0; i < a.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) result[i][c] += t * (b[i][c] - a[i][c]);
+  }
+  return result;
+}
+
+OpenPbr painted(bool metal) {
+  OpenPbr s;
+  s.metal = metal;
+  s.roughness = 0.25;
+  s.anisotropy = 0.4;
+  s.base = {0.8, 0.5, 0.2};
+  return s;
+}
+
+// By MaterialX's formulas all of a hazy surface is the blend of two that differ in roughness, and of what is
+// sent back as well, under lamps and in white surroundings.
+TEST(OpenPbrLobe, HazeIsABlendOfSurfaces) {
+  const std::vector<Lamp> all = lamps(60);
+  for (const bool metal : {false, true}) {
+    for (const bool white : {false, true}) {
+      for (const double returned : {0.0, 0.3}) {
+        OpenPbr core = painted(metal);
+        core.retroreflectivity = returned;
+        OpenPbr wide = core, hazy = core, none = core;
+        wide.roughness = 0.25 + 0.6 * 0.75;
+        hazy.haze = 0.35, hazy.spread = 0.6;
+        none.haze = 0.35, none.spread = 0;
+        const Colors cores = openPbrDrawn(core, all, "materialx", white);
+        const Colors blend = mixed(cores, openPbrDrawn(wide, all, "materialx", white), 0.35);
+        expectNear(openPbrDrawn(hazy, all, "materialx", white), blend, 1e-6, "haze");
+        expectNear(openPbrDrawn(none, all, "materialx", white), cores, 1e-6, "no spread");
+      }
+    }
+  }
+}
+
+// So it is by glTF's properties under lamps; in white surroundings but for what bounces more than once.
+TEST(OpenPbrLobe, HazeIsABlendOfSurfacesByGltf) {
+  const std::vector<Lamp> all = lamps(60);
+  for (const bool metal : {false, true}) {
+    for (const bool white : {false, true}) {
+      OpenPbr core = painted(metal);
+      OpenPbr wide = core, hazy = core;
+      wide.roughness = 0.25 + 0.6 * 0.75;
+      hazy.haze = 0.35, hazy.spread = 0.6;
+      const Colors blend =
+          mixed(openPbrDrawn(core, all, "khr", white), openPbrDrawn(wide, all, "khr", white), 0.35);
+      expectNear(openPbrDrawn(hazy, all, "khr", white), blend, white ? 0.004 : 1e-6, "haze");
+    }
+  }
+}
+
+// A rough coat roughens both, where it does.
+TEST(OpenPbrLobe, ARoughCoatRoughensTheHaze) {
+  const std::vector<Lamp> all = lamps(60);
+  for (const char* profile : {"materialx", "khr", "openpbr"}) {
+    for (const bool metal : {false, true}) {
+      OpenPbr core = painted(metal);
+      core.coat = 0.7;
+      OpenPbr wide = core, hazy = core;
+      wide.roughness = 0.25 + 0.6 * 0.75;
+      hazy.haze = 0.35, hazy.spread = 0.6;
+      const Colors blend = mixed(openPbrDrawn(core, all, profile), openPbrDrawn(wide, all, profile), 0.35);
+      expectNear(openPbrDrawn(hazy, all, profile), blend, 1e-6, profile);
+    }
+  }
+}
+
+// What is sent back is what would be reflected of a view from the other side.
+TEST(OpenPbrLobe, RetroreflectivityIsTheMirroredView) {
+  const std::vector<Lamp> all = lamps(60);
+  std::vector<Lamp> mirrored = all;
+  for (Lamp& lamp : mirrored) lamp.v = {-lamp.v[0], -lamp.v[1], lamp.v[2]};
+  for (const char* profile : {"materialx", "khr"}) {
+    OpenPbr core = painted(true);
+    core.haze = 0.5;
+    OpenPbr back = core;
+    back.retroreflectivity = 0.3;
+    const Colors blend = mixed(openPbrDrawn(core, all, profile), openPbrDrawn(core, mirrored, profile), 0.3);
+    expectNear(openPbrDrawn(back, all, profile), blend, 1e-6, "sent back");
+  }
+}
+
+// OpenPBR 1.2, "Metal": min(1, specular_weight * F82) for each colour. The highlight straight on is bounded,
+// and of a colour that stays below 1 the weight is all there is.
+TEST(OpenPbrLobe, WeightsOfMetalsAreCutOffBehindTheColor) {
+  std::vector<Lamp> straight = {{{0, 0, 1}, {0, 0, 1}}};
+  for (const char* profile : {"materialx", "khr"}) {
+    OpenPbr plain = painted(true);
+    plain.anisotropy = 0;
+    OpenPbr bright = plain;
+    bright.weight = 1.5;
+    const Colors a = openPbrDrawn(plain, straight, profile), b = openPbrDrawn(bright, straight, profile);
+    ASSERT_EQ(a.size() + b.size(), 2);
+    // 0.8 becomes 1 and not 1.2; what bounces more than once is a few percent of MaterialX's.
+    EXPECT_NEAR(b[0][0] / a[0][0], 1 / 0.8, 0.02) << profile;
+    EXPECT_NEAR(b[0][1] / a[0][1], 1.5, 0.02) << profile;
+    EXPECT_NEAR(b[0][2] / a[0][2], 1.5, 0.02) << profile;
+  }
 }
 
 }  // namespace

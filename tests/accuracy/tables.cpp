@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "accuracy/antialiasing.h"
+#include "accuracy/openpbr.h"
 #include "accuracy/profiles.h"
 
 namespace lacquer::accuracy {
@@ -107,6 +108,7 @@ std::string roughTable() {
 std::string table(std::string_view name) {
   if (name == "rough") return roughTable();
   if (name == "antialiasing") return antialiasingTable();
+  if (name == "openpbr") return openPbrTable();
   for (const Light light : {Light::Direct, Light::Environment}) {
     for (const double tint : {1.0, 0.5}) {
       const std::string kind = light == Light::Direct ? "direct" : "environment";

@@ -267,8 +267,12 @@ std::vector<Port> portsOf(const std::string& model) {
   const std::string head = text.substr(0, text.find("</nodedef>"));
   const std::regex port(R"re(<input name="(\w+)" type="(\w+)" value="([^"]*)")re");
   std::vector<Port> ports;
-  for (std::sregex_iterator it(head.begin(), head.end(), port), end; it != end; ++it)
-    ports.push_back({(*it)[1], (*it)[2], (*it)[3]});
+  for (std::sregex_iterator it(head.begin(), head.end(), port), end; it != end; ++it) {
+    // MaterialX's own surface is OpenPBR 1.1.
+    const std::string name = (*it)[1];
+    if (name.starts_with("specular_haze") || name == "specular_retroreflectivity") continue;
+    ports.push_back({name, (*it)[2], (*it)[3]});
+  }
   return ports;
 }
 

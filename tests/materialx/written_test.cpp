@@ -308,8 +308,12 @@ constexpr const char* kNoPeer = "NOT TESTED: there is no MaterialX (LACQUER_MATE
 
 TEST(WrittenPeer, takesTheCases) {
   std::map<std::string, std::string> documents;
-  for (const fs::path& file : findFiles(sourceFolder() / "tests/materialx/written", ".case"))
-    documents.emplace(file.stem().string() + ".mtlx", Case(file).section("document"));
+  for (const fs::path& file : findFiles(sourceFolder() / "tests/materialx/written", ".case")) {
+    const std::string text = Case(file).section("document");
+    // Its surface is OpenPBR 1.1, which has none of 1.2's inputs.
+    if (text.find("specular_haze") != std::string::npos) continue;
+    documents.emplace(file.stem().string() + ".mtlx", text);
+  }
   const std::optional<std::string> said = peerSays(documents);
   if (!said) GTEST_SKIP() << kNoPeer;
   EXPECT_EQ(*said, "");

@@ -39,6 +39,7 @@ const char* const kStacks[] = {
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.3},
         "KHR_materials_diffuse_roughness": {"diffuseRoughnessFactor": 0.5},
         "KHR_materials_retroreflection": {"retroreflectionFactor": 0.3},
+        "LACQUER_materials_specular_haze": {"specularHazeFactor": 0.4},
         "KHR_materials_emissive_strength": {"emissiveStrength": 2}})",
     R"({"KHR_materials_coat": {"coatFactor": 0.7, "coatColorFactor": [0.9, 0.7, 0.5]},
         "KHR_materials_transmission": {"transmissionFactor": 0.5},
@@ -134,6 +135,14 @@ TEST(Neutral, EveryExtensionAtItsDefaultsIsGoneFromEveryTemplate) {
             defaultsOf(*builtInSchema().extensions[*builtInSchema().find(other)]);
       EXPECT_EQ(shaderOf(graphOf(extensions, name)), core);
     }
+  }
+}
+
+TEST(Neutral, AHazeThatIsNotSpreadIsNone) {
+  for (const char* const name : kTemplates) {
+    const Json haze = {
+        {"LACQUER_materials_specular_haze", {{"specularHazeFactor", 0.5}, {"specularHazeSpread", 0}}}};
+    EXPECT_EQ(shaderOf(graphOf(haze, name)), shaderOf(graphOf(Json::object(), name))) << name;
   }
 }
 

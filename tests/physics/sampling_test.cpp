@@ -111,6 +111,8 @@ const std::string kScatter =
 const std::string kGrooves =
     R"("KHR_materials_anisotropy": {"anisotropyStrength": 0.7, "anisotropyRotation": 0.6})";
 const std::string kBack = R"("KHR_materials_retroreflection": {"retroreflectionFactor": 0.4})";
+const std::string kHaze =
+    R"("LACQUER_materials_specular_haze": {"specularHazeFactor": 0.4, "specularHazeSpread": 0.6})";
 const std::string kFilm = R"("KHR_materials_iridescence": {"iridescenceFactor": 0.8})";
 const std::string kCoat =
     R"("KHR_materials_coat": {"coatFactor": 0.9, "coatRoughnessFactor": 0.5, "coatColorFactor": [0.9, 0.7, 0.8],
@@ -128,6 +130,11 @@ const std::vector<Row>& rows() {
       {"leaf", pbr(0, 0.6, kLeaf)},
       {"wax sheet", pbr(0, 0.7, kClear + ", " + kScatter)},
       {"retroreflector", pbr(0.5, 0.7, kBack)},
+      {"haze", pbr(0.5, 0.5, kHaze)},
+      {"grooved haze, both ways", pbr(1, 0.6, kHaze + ", " + kBack + ", " + kGrooves)},
+      {"hazy sheet", pbr(0, 0.6, kHaze + ", " + kClear)},
+      {"hazy body from inside", pbr(0, 0.7, kHaze + ", " + kBody), true},
+      {"haze under a coat", pbr(1, 0.6, kHaze + ", " + kCoat)},
       {"grooved retroreflector", pbr(1, 0.8, kBack + ", " + kGrooves)},
       {"coat", pbr(0, 0.8, kCoat)},
       {"cloth",
@@ -445,6 +452,9 @@ std::string edgyMaterial(Random& random) {
   add(0.3, fmt::format(R"("KHR_materials_specular": {{"specularFactor": {}}})", factor()));
   add(0.3, fmt::format(R"("KHR_materials_anisotropy": {{"anisotropyStrength": {}}})", factor()));
   add(0.3, fmt::format(R"("KHR_materials_retroreflection": {{"retroreflectionFactor": {}}})", factor()));
+  add(0.3, fmt::format(
+               R"("LACQUER_materials_specular_haze": {{"specularHazeFactor": {}, "specularHazeSpread": {}}})",
+               factor(), factor()));
   add(0.3, fmt::format(R"("KHR_materials_iridescence": {{"iridescenceFactor": {}}})", factor()));
   add(0.4,
       fmt::format(R"("KHR_materials_coat": {{"coatFactor": {}, "coatRoughnessFactor": {}, "coatIor": {},

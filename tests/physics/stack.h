@@ -44,6 +44,7 @@ struct Stack {
   double diffuse_transmission = 0;
   Vec3 diffuse_transmission_color{1, 1, 1};
   double diffuse_roughness = 0, retroreflection = 0;
+  double haze = 0, haze_spread = 0;  ///< OpenPBR 1.2, "Specular haze"
   double scatter = 0, scatter_anisotropy = 0;
   Vec3 multiscatter_color{1, 1, 1};
   bool volume = false;   ///< thicknessFactor is not 0

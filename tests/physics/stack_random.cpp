@@ -31,6 +31,7 @@ constexpr std::array kExtensions = {
     "KHR_materials_clearcoat/KHR_materials_clearcoat_anisotropy",
     "ADOBE_materials_clearcoat_specular",
     "ADOBE_materials_thin_transparency",
+    "LACQUER_materials_specular_haze",
 };
 
 bool chance(Random& random, double probability) { return uniform(random) < probability; }
@@ -163,6 +164,11 @@ private:
     } else if (name == "KHR_materials_retroreflection") {
       e["retroreflectionFactor"] = factor(random_);
       texture(e, "retroreflectionTexture");
+    } else if (name == "LACQUER_materials_specular_haze") {
+      e["specularHazeFactor"] = factor(random_);
+      if (chance(random_, 0.8)) e["specularHazeSpread"] = factor(random_);
+      texture(e, "specularHazeTexture");
+      texture(e, "specularHazeSpreadTexture");
     } else if (name == "KHR_materials_scatter" || name == "KHR_materials_volume_scatter") {
       fillScatter(name == "KHR_materials_scatter", e);
     } else {

@@ -135,6 +135,9 @@ void readBody(const Object& material, const StackReadings& readings, Stack& stac
       rough.number("diffuseRoughnessFactor", 0) * rough.texel("diffuseRoughnessTexture")[0];
   const Object retro = material.extension("KHR_materials_retroreflection");
   stack.retroreflection = retro.number("retroreflectionFactor", 0) * retro.texel("retroreflectionTexture")[0];
+  const Object haze = material.extension("LACQUER_materials_specular_haze");
+  stack.haze = haze.number("specularHazeFactor", 0) * haze.texel("specularHazeTexture")[0];
+  stack.haze_spread = haze.number("specularHazeSpread", 0.3) * haze.texel("specularHazeSpreadTexture")[1];
 }
 
 /// The text's name, else the schema's.

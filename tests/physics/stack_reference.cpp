@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "physics/stack.h"
@@ -78,15 +79,22 @@ double lobeOf(const Frame& f, const Alphas& alpha, const Vec3& v, const Vec3& l,
   return d * visibility;
 }
 
+/// OpenPBR 1.2, "Specular haze": two surfaces that differ in roughness alone, blended. `of` gives a lobe's
+/// value for a roughness.
+double blended(const Stack& m, const std::function<double(double roughness)>& of) {
+  if (m.haze == 0) return of(m.roughness);
+  return of(m.roughness) * (1 - m.haze) + of(m.roughness + m.haze_spread * (1 - m.roughness)) * m.haze;
+}
+
 /// KHR_materials_transmission: D_T times the visibility of the mirrored light, as the text writes it but for
 /// the step function of the light.
-double transmittedLobe(const Stack& m, const Frame& f, const Vec3& v, const Vec3& l, const Vec3& mirrored,
-                       const StackReadings& readings) {
+double transmittedLobe(const Stack& m, double roughness, const Frame& f, const Vec3& v, const Vec3& l,
+                       const Vec3& mirrored, const StackReadings& readings) {
   const double clear = m.ior == 0 ? 1 : std::clamp(2 * m.ior - 2, 0.0, 1.0);
   const double blur = readings.plain_transmission_alpha ? 1 : clear;
-  const double alpha = std::max(square(m.roughness * blur), kLeastAlpha);
+  const double alpha = std::max(square(roughness * blur), kLeastAlpha);
   if (readings.anisotropic_transmission) {
-    return lobeOf(f, alphasOf(m.roughness * std::sqrt(blur), m.anisotropy), v, mirrored, readings);
+    return lobeOf(f, alphasOf(roughness * std::sqrt(blur), m.anisotropy), v, mirrored, readings);
   }
   if (readings.correlated_transmission) return lobeOf(f, {alpha, alpha}, v, mirrored, readings);
   const Vec3 h = normalized(v + mirrored);
@@ -190,7 +198,8 @@ Body bodyOf(const Stack& m, const StackReadings& readings) {
 /// The base seen from one direction: `v` is where its interface takes the view to be, `diffuse_v` its body.
 Vec3 reflectedFrom(const Stack& m, const Frame& f, const Vec3& v, const Vec3& view, const Vec3& l,
                    const StackReadings& readings) {
-  const double lobe = lobeOf(f, alphasOf(m.roughness, m.anisotropy), v, l, readings);
+  const double lobe =
+      blended(m, [&](double r) { return lobeOf(f, alphasOf(r, m.anisotropy), v, l, readings); });
   const double view_cosine = dot(f.n, v);
   const Interface at_lobe = interfaceAt(m, dot(v, normalized(v + l)), view_cosine, readings);
   const bool moved = !readings.retro_moves_nothing_of_body;
@@ -238,7 +247,8 @@ Vec3 transmitted(const Stack& m, const Frame& f, const Vec3& v, const Vec3& l,
       readings.diffuse_transmission_beside ? b.through_diffuse : (1 - t) * b.through_diffuse;
   const Vec3 diffuse = diffuseOf(m, m.diffuse_transmission_color, f.n, v, mirrored, readings) * diffuse_part;
   double lobe = 0;
-  if (t * (1 - b.scattered) > 0) lobe = transmittedLobe(m, f, v, l, mirrored, readings);
+  if (t * (1 - b.scattered) > 0)
+    lobe = blended(m, [&](double r) { return transmittedLobe(m, r, f, v, l, mirrored, readings); });
   const Vec3 specular = m.base_color * (t * (1 - b.scattered) * lobe);
   const Vec3 scattered =
       m.multiscatter_color * (t * b.scattered * (1 + m.scatter_anisotropy) / 2 / std::numbers::pi);
@@ -346,7 +356,9 @@ private:
 }  // namespace
 
 Vec3 stackWhiteRoom(const Stack& stack, double cosine, const SplitSums& sums, const StackReadings& readings) {
-  const Interface i = Surroundings(stack, cosine, sums(cosine, stack.roughness), readings).run();
+  const SplitSum sum{blended(stack, [&](double r) { return sums(cosine, r).scale; }),
+                     blended(stack, [&](double r) { return sums(cosine, r).bias; })};
+  const Interface i = Surroundings(stack, cosine, sum, readings).run();
   const auto albedo = [&](const Vec3& color) {
     if (stack.diffuse_roughness == 0 || readings.lambert) return color;
     Vec3 result{};

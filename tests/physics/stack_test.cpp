@@ -58,6 +58,8 @@ TEST(StackReference, ExchangesLightAndEyeWhereItsTextDoes) {
     m.diffuse_transmission = uniform(random);
     m.diffuse_roughness = uniform(random);
     m.retroreflection = uniform(random);
+    m.haze = uniform(random);
+    m.haze_spread = uniform(random);
     m.anisotropy.strength = uniform(random);
     m.anisotropy.rotation = uniform(random, -3, 3);
     Sample s = sampleOf(unitVectorAbove(random, {0, 0, 1}), unitVector(random));
@@ -105,6 +107,40 @@ TEST(StackReference, PanesGiveNoMoreThanTheyGet) {
       EXPECT_LT(albedo, 1.001) << roughness << " " << cosine;
       EXPECT_GT(albedo, 0.25) << roughness << " " << cosine;
     }
+  }
+}
+
+// A white metal's haze takes from its highlight what it gives: no more comes back than of the rougher and of
+// the smoother one alone, and hardly less than all.
+TEST(StackReference, HazeGivesNoMoreThanItGets) {
+  for (const double spread : {0.0, 0.3, 1.0}) {
+    Stack m;
+    m.roughness = 0.4;
+    m.haze = 0.5;
+    m.haze_spread = spread;
+    for (const double cosine : {0.3, 1.0}) {
+      const double albedo = most(albedoOf(m, cosine));
+      Stack smooth = m, rough = m;
+      smooth.haze = 0;
+      rough.haze = 1;
+      EXPECT_LT(albedo, 1.001) << spread << " " << cosine;
+      EXPECT_GT(albedo, 0.5) << spread << " " << cosine;
+      EXPECT_NEAR(albedo, (most(albedoOf(smooth, cosine)) + most(albedoOf(rough, cosine))) / 2, 1e-9);
+    }
+  }
+}
+
+// What bounces more than once makes up for all that a white metal loses, hazy or not.
+TEST(Stack, HazyWhiteMetalIsWhite) {
+  Random random(37);
+  for (int k = 0; k < 40; ++k) {
+    StackMaterial material;
+    material.json["name"] = "M";
+    material.json["pbrMetallicRoughness"]["roughnessFactor"] = uniform(random);
+    material.json["extensions"]["LACQUER_materials_specular_haze"] = {
+        {"specularHazeFactor", uniform(random)}, {"specularHazeSpread", uniform(random)}};
+    const Vec3 room = lacquerWhiteRoom(material, uniform(random, 0.05, 1));
+    for (const double x : room) EXPECT_NEAR(x, 1, 1e-5) << gltfOf(material);
   }
 }
 

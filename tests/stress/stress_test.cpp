@@ -234,6 +234,12 @@ TEST(Stress, TheExamplesHold) {
   EXPECT_LT(base, 1.8);
 }
 
+// The haze is as much of the furnace's light as the highlight, and wider.
+TEST(Stress, AHazeHolds) {
+  const json answer = stressed({(sourceFolder() / "tests/stress/haze.gltf").string()}, few(500), Options());
+  EXPECT_EQ(answer["faults"], 0) << answer["subjects"].dump();
+}
+
 TEST(Stress, MediumPrecisionOnlyReports) {
   Stress half = few(4096);
   half.mediump = true;

@@ -159,6 +159,11 @@ private:
       const double across = alpha(material[variable.first]);
       const double strength = number(material, (layer + "anisotropy_strength").c_str(), 0);
       lobes.push_back({across + (1 - across) * strength * strength, across});
+      // The base's haze stands about its lobe.
+      if (!layer.empty() || !has("specular_haze_factor")) continue;
+      const double core = material[variable.first];
+      const double wide = alpha(core + number(material, "specular_haze_spread", 0.3) * (1 - core));
+      lobes.push_back({wide + (1 - wide) * strength * strength, wide});
     }
     if (!has("retroreflection_factor")) return lobes;
     // What is sent back stands about the view as the lobes stand about its mirror direction.

@@ -31,6 +31,7 @@ struct Row {
 };
 
 #define EXT "extensions/KHR_materials_"
+#define HAZE "extensions/LACQUER_materials_specular_haze/specularHaze"
 constexpr std::string_view kMetallicRoughness = "pbrMetallicRoughness/metallicRoughnessTexture";
 
 constexpr Row kGltfRows[] = {
@@ -62,6 +63,10 @@ constexpr Row kOpenPbrRows[] = {
     {"base_diffuse_roughness", 1, EXT "diffuse_roughness/diffuseRoughnessFactor",
      EXT "diffuse_roughness/diffuseRoughnessTexture", 0},
     {"specular_ior", 1, EXT "ior/ior", {}, 0, 1.5},
+    {"specular_haze", 1, HAZE "Factor", HAZE "Texture", 0},
+    {"specular_haze_spread", 1, HAZE "Spread", HAZE "SpreadTexture", 1, 0.3},
+    {"specular_retroreflectivity", 1, EXT "retroreflection/retroreflectionFactor",
+     EXT "retroreflection/retroreflectionTexture", 0},
     {"transmission_weight", 1, EXT "transmission/transmissionFactor", EXT "transmission/transmissionTexture",
      0},
     {"transmission_depth", 1, EXT "volume/attenuationDistance", {}, 0},
@@ -91,7 +96,8 @@ constexpr Row kClearcoatAsCoat[] = {
 
 /// Terms of these only OpenPBR's surface has.
 constexpr std::string_view kOfOpenPbr[] = {"KHR_materials_coat", "KHR_materials_fuzz",
-                                           "KHR_materials_diffuse_roughness"};
+                                           "KHR_materials_diffuse_roughness", "KHR_materials_retroreflection",
+                                           "LACQUER_materials_specular_haze"};
 
 /// The extension that a property's path leads into; empty for glTF's own.
 std::string_view extensionOf(std::string_view path) {
@@ -734,6 +740,7 @@ SurfaceOut Translation::make(std::string_view surface) {
 }
 
 #undef EXT
+#undef HAZE
 
 }  // namespace
 

@@ -158,6 +158,21 @@ void film(Surface& s, const Value& weight, const Value& thickness, double nanome
   s.set(at + "iridescenceThicknessMaximum", kMost * texel.factor[0]);
 }
 
+/// OpenPBR 1.2's, which change the lobe of the base alone.
+void hazeAndRetroreflection(Surface& s) {
+  const Value haze = s.get("specular_haze", 0);
+  const Value spread = s.get("specular_haze_spread", 0.3);
+  if (haze.there()) {
+    const std::string at = "extensions/LACQUER_materials_specular_haze/";
+    s.scalar(at + "specularHazeFactor", at + "specularHazeTexture", 'r', s.product({haze}));
+    s.scalar(at + "specularHazeSpread", at + "specularHazeSpreadTexture", 'g', s.product({spread}));
+  }
+  const Value returned = s.get("specular_retroreflectivity", 0);
+  if (!returned.there()) return;
+  const std::string at = "extensions/KHR_materials_retroreflection/";
+  s.scalar(at + "retroreflectionFactor", at + "retroreflectionTexture", 'r', s.product({returned}));
+}
+
 struct Coat {
   Value weight, color, roughness;
   double ior = 1.5, darkening = 0, anisotropy = 0, turns = 0;
@@ -323,12 +338,19 @@ void openPbr(Surface& s) {
   const Value metalness = s.get("base_metalness", 0);
   const Value weight = s.get("specular_weight", 1);
   const Value of_metal = metalness.isConstant(1) ? atMost(weight, 1) : constant(1);
+  // What a metal reflects straight on is cut off at 1 behind a weight above it.
+  if (metalness.isConstant(1) && !weight.source && !base.source) {
+    for (double& x : base.constant) x = std::min(x * std::max(weight.constant[0], 1.0), std::max(x, 1.0));
+  }
   coverage(s, s.product({base_weight, of_metal, base}), s.get("geometry_opacity", 1));
   diffuseRoughness(s, s.get("base_diffuse_roughness", 0));
   metallicRoughness(s, metalness, s.product({s.get("specular_roughness", 0.3)}));
   anisotropy(s, s.number("specular_roughness_anisotropy", 0), 0);
-  tintedSpecular(s, weight, constant(1), s.get("specular_color", kWhite));
+  // A metal has its weight already.
+  tintedSpecular(s, metalness.isConstant(1) ? constant(1) : weight, constant(1),
+                 s.get("specular_color", kWhite));
   refraction(s, s.number("specular_ior", 1.5));
+  hazeAndRetroreflection(s);
   const Value fuzz = s.get("fuzz_weight", 0);
   const Value fuzz_color = s.get("fuzz_color", kWhite);
   const Value fuzz_roughness = s.get("fuzz_roughness", 0.5);
