@@ -246,7 +246,8 @@ std::array<double, 2> flatBrightness(const Bumpy& material, Way way) {
   Points points;
   for (double x = -0.9; x < 0.9; x += 0.05) {
     for (int i = 0; i < 4; ++i) {
-      eval::Point& point = points.points.emplace_back(placeAt(x, 0.3 * x + 0.1));
+      // Through the highlight.
+      eval::Point& point = points.points.emplace_back(placeAt(x, 0.3 * x + 0.2));
       point.uv.fill({0.01 * (i % 2), 0.01 * (i / 2)});
     }
   }
