@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/normal_maps.h"
 #include "eval/evaluate.h"
 #include "eval/points.h"
 #include "lower/lower.h"
@@ -26,79 +27,82 @@ Vec3 unit(const Vec3& v) {
 constexpr double kFrequency = 25;  ///< of the bumps, on a ball of radius 1
 constexpr double kSlope = 0.3;     ///< of each of the three waves that they are
 constexpr int kAcross = 8;         ///< samples of the yardstick, along each side of a pixel
+constexpr int kMappedRadius = 40;  ///< in pixels
+constexpr double kMost = 3000;     ///< pixels of a ball that are looked at
 
-/// A place of the ball, seen from far away along z, and its bumpy normal.
-struct Place {
-  eval::Point point;
-  Vec3 bumpy;
-};
-
-Place placeAt(double x, double y) {
+/// A place of a smooth ball, seen from far away along z.
+eval::Point placeAt(double x, double y) {
   const Vec3 ball{x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))};
+  const Vec3 t = unit({ball[2], 0, -ball[0]});
+  eval::Point point;
+  point.n = ball;
+  point.t = {t[0], t[1], t[2], 1};
+  point.l = unit({0.4, 0.5, 0.8});
+  point.light = {3, 3, 3};
+  point.position = ball;
+  return point;
+}
+
+Vec3 bumpy(const Vec3& ball) {
   const Vec3 wave{kSlope * std::cos(kFrequency * ball[0]), kSlope * std::cos(kFrequency * ball[1]),
                   kSlope * std::cos(kFrequency * ball[2])};
   const double along = dot(wave, ball);
-  Place place;
-  place.bumpy = unit({ball[0] - wave[0] + along * ball[0], ball[1] - wave[1] + along * ball[1],
-                      ball[2] - wave[2] + along * ball[2]});
-  const Vec3 t = unit({ball[2], 0, -ball[0]});
-  place.point.n = ball;
-  place.point.t = {t[0], t[1], t[2], 1};
-  place.point.l = unit({0.4, 0.5, 0.8});
-  place.point.light = {3, 3, 3};
-  place.point.position = ball;
-  return place;
+  return unit({ball[0] - wave[0] + along * ball[0], ball[1] - wave[1] + along * ball[1],
+               ball[2] - wave[2] + along * ball[2]});
 }
 
-/// A normal in the place's tangent space.
-Vec3 texelOf(const Place& place) {
-  const Vec3& n = place.point.n;
-  const Vec3 t{place.point.t[0], place.point.t[1], place.point.t[2]};
+/// The normal where a map has a texel.
+Vec3 bent(const eval::Point& place, const Vec3& texel) {
+  const Vec3& n = place.n;
+  const Vec3 t{place.t[0], place.t[1], place.t[2]};
   const Vec3 b{n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
-  return {dot(place.bumpy, t), dot(place.bumpy, b), dot(place.bumpy, n)};
+  Vec3 sum{};
+  for (size_t c = 0; c < 3; ++c)
+    sum[c] = (2 * texel[0] - 1) * t[c] + (2 * texel[1] - 1) * b[c] + (2 * texel[2] - 1) * n[c];
+  return unit(sum);
 }
 
-/// Points in fours, and what the normal map has there.
+/// Points in fours, and the map that is read there.
 struct Points {
   std::vector<eval::Point> points;
-  std::vector<Vec3> texels;
-
-  void add(const Place& place, const Vec3& texel, bool mapped) {
-    points.push_back(place.point);
-    if (!mapped) points.back().n = place.bumpy;
-    texels.push_back(texel);
-  }
+  const NormalMap* map = nullptr;  ///< null for one that is flat
+  double lod = 0;                  ///< of what is read by derivatives
 };
 
 class Drawn {
 public:
-  Drawn(const Bumpy& material, bool antialiased) {
+  Drawn(const Bumpy& material, Way way) {
     static const lang::Library kLibrary = lang::Library::embedded();
     const Result<material::Document> document = test::materialsOf(material.gltf, "bumpy.gltf");
     EXPECT_TRUE(document);
     if (!document) return;
     test::BuildSetup setup;
     setup.ibl = false;
-    setup.switches["specular_antialiasing"] = antialiased;
+    setup.switches["specular_antialiasing"] = way != Way::Without;
+    setup.switches["normal_map_taps"] = way == Way::Taps;
     Diagnostics warnings;
     const graph::Graph graph =
-        test::buildGraph(document->materials.at(0), {true, true, false, {0}}, setup, warnings);
+        test::buildGraph(document->materials.at(0), {true, true, false, {true}}, setup, warnings);
     Result<ir::Module> module = lower::lower(graph, kLibrary, {.evaluable = true});
     EXPECT_TRUE(module);
     if (module) module_ = std::move(*module);
   }
 
-  /// Green of each point.
-  std::vector<double> at(const Points& drawn) const {
+  /// Green of each point, at another roughness than the material's if that is named.
+  std::vector<double> at(const Points& drawn, const std::string& rough = {}, double roughness = 0) const {
     const std::vector<eval::Point>& points = drawn.points;
     eval::Bindings bindings;
     eval::bindPoints(module_, points, bindings);
     bindings.quads = true;
+    if (!rough.empty()) bindings.columns[rough] = eval::Column::constant({roughness});
     for (const ir::TextureSlot& slot : module_.textures) {
-      bindings.textures[slot.name] = [&drawn](size_t i, const Vec3&, double) {
-        const Vec3& n = drawn.texels[i];
-        return std::array<double, 4>{0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2], 1};
-      };
+      eval::Sampler& sampler = bindings.textures[slot.name];
+      sampler = eval::Sampler([&drawn](size_t, const Vec3& uv, double lod) {
+        if (drawn.map == nullptr) return std::array<double, 4>{0.5, 0.5, 1, 1};
+        const Vec3 texel = drawn.map->at(uv[0], uv[1], lod + drawn.lod);
+        return std::array<double, 4>{texel[0], texel[1], texel[2], 1};
+      });
+      sampler.size = {NormalMap::kSize, NormalMap::kSize, 1};
     }
     std::vector<double> result(points.size(), std::nan(""));
     for (const ir::Output& output : module_.outputs) {
@@ -115,6 +119,55 @@ private:
 };
 
 double shown(double radiance) { return radiance / (1 + radiance); }
+
+/// A ball in pixels.
+struct Ball {
+  int radius = 0;
+  const NormalMap* map = nullptr;
+  double texels = 1;  ///< of the map, to a pixel
+
+  eval::Point at(double x, double y) const {
+    eval::Point point = placeAt(x / radius, y / radius);
+    if (map == nullptr) point.n = bumpy(point.n);
+    point.uv.fill({x * texels / NormalMap::kSize, y * texels / NormalMap::kSize});
+    return point;
+  }
+};
+
+/// What is drawn of a ball: quads of pixels, 64 places in each pixel, and the mean of their normals.
+struct Seen {
+  Points quads, fine, means;
+};
+
+Seen seen(const Ball& ball) {
+  Seen all;
+  all.quads.map = all.fine.map = ball.map;
+  all.quads.lod = std::log2(std::max(1.0, ball.texels));
+  const int every = static_cast<int>(std::ceil(3.14 * ball.radius * ball.radius / kMost));
+  for (int y = -ball.radius; y < ball.radius; y += 2) {
+    for (int x = -ball.radius; x < ball.radius; x += 2) {
+      // The whole quad lies on the ball, where its slope is at most 3.
+      const double far = std::hypot(std::max(x + 2, -x), std::max(y + 2, -y));
+      if (far > 0.95 * ball.radius || (x / 2 + 7 * (y / 2)) % every != 0) continue;
+      for (int i = 0; i < 4; ++i) {
+        const double left = x + i % 2;
+        const double top = y + i / 2;
+        Vec3 sum{};
+        for (int s = 0; s < kAcross * kAcross; ++s) {
+          const eval::Point& place = all.fine.points.emplace_back(
+              ball.at(left + (s % kAcross + 0.5) / kAcross, top + (s / kAcross + 0.5) / kAcross));
+          const Vec3 normal =
+              ball.map == nullptr ? place.n : bent(place, ball.map->at(place.uv[0][0], place.uv[0][1], 0));
+          for (size_t c = 0; c < 3; ++c) sum[c] += normal[c];
+        }
+        eval::Point& mean = all.means.points.emplace_back(ball.at(left + 0.5, top + 0.5));
+        all.quads.points.push_back(mean);
+        mean.n = unit(sum);
+      }
+    }
+  }
+  return all;
+}
 
 }  // namespace
 
@@ -135,86 +188,97 @@ std::vector<Bumpy> bumpyMaterials() {
   return {
       {"dielectric, roughness 0.3", gltf(0, 0.3, "")},
       {"metal, 0.2", gltf(1, 0.2, "")},
-      {"coat, 0.15, over a metal, 0.5", gltf(1, 0.5, coat)},
+      {"coat, 0.15, over a metal, 0.5", gltf(1, 0.5, coat), "clearcoat_roughness_factor"},
       {"anisotropic metal, 0.3, strength 0.6", gltf(1, 0.3, grooves)},
-      {"mapped dielectric, 0.3", gltf(0, 0.3, map), true},
-      {"mapped metal, 0.2", gltf(1, 0.2, map), true},
-      {"mapped coat, 0.15, over a metal, 0.5", gltf(1, 0.5, map + mapped_coat), true},
-      {"mapped anisotropic metal, 0.3, strength 0.6", gltf(1, 0.3, map + grooves), true},
+      {"mapped dielectric, 0.3", gltf(0, 0.3, map), "roughness_factor", true},
+      {"mapped metal, 0.2", gltf(1, 0.2, map), "roughness_factor", true},
+      {"mapped metal, 0.4", gltf(1, 0.4, map), "roughness_factor", true},
+      {"mapped coat, 0.15, over a metal, 0.5", gltf(1, 0.5, map + mapped_coat), "clearcoat_roughness_factor",
+       true},
+      {"mapped anisotropic metal, 0.3, strength 0.6", gltf(1, 0.3, map + grooves), "roughness_factor", true},
   };
 }
 
-Aliasing aliasing(const Bumpy& material, double pixels_to_a_bump) {
-  const double wave = 2 * 3.14159265358979323846 / kFrequency;
-  const int radius = static_cast<int>(std::lround(pixels_to_a_bump / wave));
-  const double pixel = 1.0 / radius;
-  Points quads;
-  Points fine;
-  for (int y = -radius; y < radius; y += 2) {
-    for (int x = -radius; x < radius; x += 2) {
-      // The whole quad lies on the ball, where its slope is at most 3.
-      const double far = std::hypot(std::max(x + 2, -x), std::max(y + 2, -y));
-      if (far * pixel > 0.95) continue;
-      for (int i = 0; i < 4; ++i) {
-        const double left = x + i % 2;
-        const double top = y + i / 2;
-        Vec3 mean{};
-        for (int s = 0; s < kAcross * kAcross; ++s) {
-          const Place place = placeAt((left + (s % kAcross + 0.5) / kAcross) * pixel,
-                                      (top + (s / kAcross + 0.5) / kAcross) * pixel);
-          const Vec3 texel = texelOf(place);
-          for (size_t c = 0; c < 3; ++c) mean[c] += texel[c] / (kAcross * kAcross);
-          fine.add(place, texel, material.mapped);
-        }
-        quads.add(placeAt((left + 0.5) * pixel, (top + 0.5) * pixel), mean, material.mapped);
-      }
+Aliasing aliasing(const Bumpy& material, double distance) {
+  const Drawn off(material, Way::Without);
+  const Drawn on(material, Way::With);
+  const Drawn taps(material, Way::Taps);
+  std::vector<Ball> balls;
+  if (material.mapped) {
+    for (const Relief relief : kReliefs) balls.push_back({kMappedRadius, &NormalMap::of(relief), distance});
+  } else {
+    const double wave = 2 * 3.14159265358979323846 / kFrequency;
+    balls.push_back({static_cast<int>(std::lround(distance / wave))});
+  }
+  Aliasing sum;
+  size_t count = 0;
+  for (const Ball& ball : balls) {
+    const Seen all = seen(ball);
+    const std::vector<double> exact = off.at(all.fine);
+    const std::vector<double> without = off.at(all.quads);
+    const std::vector<double> with = on.at(all.quads);
+    Points by_footprint = all.quads;
+    by_footprint.lod = 0;
+    const std::vector<double> tapped = material.mapped ? taps.at(by_footprint) : with;
+    std::vector<std::vector<double>> wider;
+    for (double roughness = 0.1; roughness < 1; roughness *= 1.08)
+      wider.push_back(off.at(all.means, material.roughness, roughness));
+    for (size_t i = 0; i < with.size(); ++i) {
+      double mean = 0;
+      for (int s = 0; s < kAcross * kAcross; ++s) mean += exact[i * kAcross * kAcross + s];
+      const double right = shown(mean / (kAcross * kAcross));
+      const auto error = [&](double radiance) { return std::pow(shown(radiance) - right, 2); };
+      double best = error(wider[0][i]);
+      for (const std::vector<double>& width : wider) best = std::min(best, error(width[i]));
+      sum.without += error(without[i]);
+      sum.with += error(with[i]);
+      sum.taps += error(tapped[i]);
+      sum.best += best;
     }
+    count += with.size();
   }
-  const Drawn off(material, false);
-  const Drawn on(material, true);
-  const std::vector<double> exact = off.at(fine);
-  const std::vector<double> without = off.at(quads);
-  const std::vector<double> with = on.at(quads);
-  Aliasing errors;
-  for (size_t i = 0; i < quads.points.size(); ++i) {
-    double mean = 0;
-    for (int s = 0; s < kAcross * kAcross; ++s) mean += exact[i * kAcross * kAcross + s];
-    const double right = shown(mean / (kAcross * kAcross));
-    errors.without += std::pow(shown(without[i]) - right, 2) / static_cast<double>(quads.points.size());
-    errors.with += std::pow(shown(with[i]) - right, 2) / static_cast<double>(quads.points.size());
-  }
-  return {std::sqrt(errors.without), std::sqrt(errors.with)};
+  for (double* error : {&sum.without, &sum.with, &sum.taps, &sum.best})
+    *error = std::sqrt(*error / static_cast<double>(count));
+  return sum;
 }
 
-std::array<double, 2> flatBrightness(const Bumpy& material) {
+std::array<double, 2> flatBrightness(const Bumpy& material, Way way) {
   Points points;
   for (double x = -0.9; x < 0.9; x += 0.05) {
-    const Place place = placeAt(x, 0.3 * x + 0.1);
-    // As eight bits have it.
-    Vec3 texel = texelOf(place);
-    for (double& c : texel) c = std::round((0.5 + 0.5 * c) * 255) / 255 * 2 - 1;
-    for (int i = 0; i < 4; ++i) points.add(place, texel, material.mapped);
+    for (int i = 0; i < 4; ++i) {
+      // Through the highlight.
+      eval::Point& point = points.points.emplace_back(placeAt(x, 0.3 * x + 0.2));
+      point.uv.fill({0.01 * (i % 2), 0.01 * (i / 2)});
+    }
   }
-  const std::vector<double> off = Drawn(material, false).at(points);
-  const std::vector<double> on = Drawn(material, true).at(points);
+  // As eight bits have it, leaning to both sides: the least and the greatest that is missing from its length.
   std::array<double, 2> range = {1e9, 0};
-  for (size_t i = 0; i < off.size(); ++i) {
-    if (off[i] <= 0) continue;
-    range[0] = std::min(range[0], on[i] / off[i]);
-    range[1] = std::max(range[1], on[i] / off[i]);
+  for (const Relief relief : kReliefs) {
+    const NormalMap flat(NormalMap::of(relief).at(0.3, 0.7, 0));
+    points.map = &flat;
+    const std::vector<double> off = Drawn(material, Way::Without).at(points);
+    const std::vector<double> on = Drawn(material, way).at(points);
+    for (size_t i = 0; i < off.size(); ++i) {
+      if (off[i] <= 0) continue;
+      range[0] = std::min(range[0], on[i] / off[i]);
+      range[1] = std::max(range[1], on[i] / off[i]);
+    }
   }
   return range;
 }
 
 std::string antialiasingTable() {
   std::string text =
-      "| ball | pixels to a bump | error without | with | of it |\n"
-      "|---|---|---|---|---|\n";
+      "| ball | distance | error without | with | of it | with taps | of it | best alpha |\n"
+      "|---|---|---|---|---|---|---|---|\n";
   for (const Bumpy& material : bumpyMaterials()) {
-    for (const double bump : kBumps) {
-      const Aliasing errors = aliasing(material, bump);
-      text += fmt::format("| {} | {} | {:.3f} | {:.3f} | {:.0f} % |\n", material.name, bump, errors.without,
-                          errors.with, 100 * errors.with / errors.without);
+    for (const double distance : distancesOf(material)) {
+      const Aliasing errors = aliasing(material, distance);
+      const auto part = [&](double error) { return fmt::format("{:.0f} %", 100 * error / errors.without); };
+      text += fmt::format("| {} | {} | {:.4f} | {:.4f} | {} |", material.name, distance, errors.without,
+                          errors.with, part(errors.with));
+      text += material.mapped ? fmt::format(" {:.4f} | {} |", errors.taps, part(errors.taps)) : "  |  |";
+      text += fmt::format(" {} |\n", part(errors.best));
     }
   }
   return text;

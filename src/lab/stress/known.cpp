@@ -85,6 +85,9 @@ constexpr Known kKnown[] = {
     {"_covers", "swizzle < 0", kEdge},
     {"edge_above", "end_z < 0", "an edge that ends at the horizon goes below it or does not"},
     {"edge_above", "swizzle < 0", "an edge that ends at the horizon goes below it or does not"},
+    {"lobe_over_pixel", "5 < places", "a choice"},
+    {"normal_turns", "swizzle < 0", "any axes in its plane will do"},
+    {"normal_map_pixel", "swizzle < 0", "any axes in its plane will do"},
     {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
     // Of nodes/standard/, whose texts ask for steps.
     {"ifgreater", "value1", "a comparison"},
