@@ -79,7 +79,7 @@ public:
     test::BuildSetup setup;
     setup.ibl = false;
     setup.switches["specular_antialiasing"] = way != Way::Without;
-    setup.switches["normal_map_taps"] = way == Way::Taps;
+    setup.switches["pixel_lobes"] = way == Way::Lobes;
     Diagnostics warnings;
     const graph::Graph graph =
         test::buildGraph(document->materials.at(0), {true, true, false, {true}}, setup, warnings);
@@ -202,7 +202,7 @@ std::vector<Bumpy> bumpyMaterials() {
 Aliasing aliasing(const Bumpy& material, double distance) {
   const Drawn off(material, Way::Without);
   const Drawn on(material, Way::With);
-  const Drawn taps(material, Way::Taps);
+  const Drawn lobes(material, Way::Lobes);
   std::vector<Ball> balls;
   if (material.mapped) {
     for (const Relief relief : kReliefs) balls.push_back({kMappedRadius, &NormalMap::of(relief), distance});
@@ -219,7 +219,7 @@ Aliasing aliasing(const Bumpy& material, double distance) {
     const std::vector<double> with = on.at(all.quads);
     Points by_footprint = all.quads;
     by_footprint.lod = 0;
-    const std::vector<double> tapped = material.mapped ? taps.at(by_footprint) : with;
+    const std::vector<double> spread = lobes.at(material.mapped ? by_footprint : all.quads);
     std::vector<std::vector<double>> wider;
     for (double roughness = 0.1; roughness < 1; roughness *= 1.08)
       wider.push_back(off.at(all.means, material.roughness, roughness));
@@ -232,12 +232,12 @@ Aliasing aliasing(const Bumpy& material, double distance) {
       for (const std::vector<double>& width : wider) best = std::min(best, error(width[i]));
       sum.without += error(without[i]);
       sum.with += error(with[i]);
-      sum.taps += error(tapped[i]);
+      sum.lobes += error(spread[i]);
       sum.best += best;
     }
     count += with.size();
   }
-  for (double* error : {&sum.without, &sum.with, &sum.taps, &sum.best})
+  for (double* error : {&sum.without, &sum.with, &sum.lobes, &sum.best})
     *error = std::sqrt(*error / static_cast<double>(count));
   return sum;
 }
@@ -269,7 +269,7 @@ std::array<double, 2> flatBrightness(const Bumpy& material, Way way) {
 
 std::string antialiasingTable() {
   std::string text =
-      "| ball | distance | error without | with | of it | with taps | of it | best alpha |\n"
+      "| ball | distance | error without | with | of it | with lobes | of it | best alpha |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const Bumpy& material : bumpyMaterials()) {
     for (const double distance : distancesOf(material)) {
@@ -277,7 +277,7 @@ std::string antialiasingTable() {
       const auto part = [&](double error) { return fmt::format("{:.0f} %", 100 * error / errors.without); };
       text += fmt::format("| {} | {} | {:.4f} | {:.4f} | {} |", material.name, distance, errors.without,
                           errors.with, part(errors.with));
-      text += material.mapped ? fmt::format(" {:.4f} | {} |", errors.taps, part(errors.taps)) : "  |  |";
+      text += fmt::format(" {:.4f} | {} |", errors.lobes, part(errors.lobes));
       text += fmt::format(" {} |\n", part(errors.best));
     }
   }

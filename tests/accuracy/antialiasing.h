@@ -21,13 +21,13 @@ constexpr const std::array<double, 4>& distancesOf(const Bumpy& material) {
   return material.mapped ? kTexels : kBumps;
 }
 
-/// Without the switch, with it, and with normal_map_taps as well.
-enum class Way { Without, With, Taps };
+/// Without the switch, with it, and with pixel_lobes as well.
+enum class Way { Without, With, Lobes };
 
 /// RMS of x / (1 + x), over the balls' pixels. The best is that of lobes about the mean of the pixel's true
 /// normals whose roughness is, pixel by pixel, the one that is closest.
 struct Aliasing {
-  double without = 0, with = 0, taps = 0, best = 0;
+  double without = 0, with = 0, lobes = 0, best = 0;
 };
 Aliasing aliasing(const Bumpy& material, double distance);
 
