@@ -134,8 +134,9 @@ TEST(OpenPbr, AbsorbsAlongViewAndLight) {
 
 constexpr double kTints[] = {1, 0.98, 0.7, 0.3, 0.02, 1e-4};
 
-/// Every tint, albedo, view and light: by quadrature in the preshader against quadrature here.
-TEST(Physical, IsExactForASmoothCoat) {
+/// Every tint, albedo, view and light, but for the fit to Fresnel's equations: worst at grazing angles,
+/// where all of their rise is if an IOR is hardly one.
+TEST(Physical, FollowsTheQuadratureOfASmoothCoat) {
   for (const double ior : kIors) {
     for (const double tint : kTints) {
       std::vector<Query> queries;
@@ -154,9 +155,10 @@ TEST(Physical, IsExactForASmoothCoat) {
         const auto where = [&] {
           return fmt::format("{} {} {} {} {}", ior, tint, coating.albedo, view, light);
         };
-        EXPECT_NEAR(direct[i], smoothDirect(coating, view, light), 5e-4) << where();
-        EXPECT_NEAR(around[i], smoothEnvironment(coating, view), 5e-4) << where();
-        EXPECT_NEAR(emitted[i], smoothEmission(coating, view), 8e-4) << where();
+        const double fit = ior == 1 ? 1e-4 : ior < 1.3 ? 0.1 : ior <= 2 ? 0.012 : 0.06;
+        EXPECT_NEAR(direct[i], smoothDirect(coating, view, light), fit) << where();
+        EXPECT_NEAR(around[i], smoothEnvironment(coating, view), fit) << where();
+        EXPECT_NEAR(emitted[i], smoothEmission(coating, view), fit) << where();
       }
     }
   }

@@ -75,11 +75,11 @@ public:
   }
 
   /// Calls `atBase(inner direction to the eye, weight)` wherever a path from the eye meets the base; what
-  /// leaves is returned.
+  /// leaves is returned, or `mirrored` of a path that the coat's surface has sent back.
   template <class F>
-  Vec3 walk(const Vec3& view, F atBase) {
+  Vec3 walk(const Vec3& view, F atBase, const Vec3& mirrored = {}) {
     Vec3 ray = view;
-    if (crossBoundary(ray, layers_.alpha, layers_.ior, random_) == Side::Same) return {};
+    if (crossBoundary(ray, layers_.alpha, layers_.ior, random_) == Side::Same) return mirrored;
     Vec3 weight{1, 1, 1};
     for (;;) {
       // `ray` leads from the base up to where the path came from.
@@ -227,6 +227,13 @@ Estimate3 underCoatAround(const Layers& layers, const Vec3& view, size_t paths, 
   Path path(layers, seed);
   Sums sums;
   for (size_t i = 0; i < paths; ++i) sums.add(path.walk(view, [](const Vec3&, const Vec3&) {}));
+  return sums.over(paths);
+}
+
+Estimate3 seenAround(const Layers& layers, const Vec3& view, size_t paths, uint64_t seed) {
+  Path path(layers, seed);
+  Sums sums;
+  for (size_t i = 0; i < paths; ++i) sums.add(path.walk(view, [](const Vec3&, const Vec3&) {}, {1, 1, 1}));
   return sums.over(paths);
 }
 

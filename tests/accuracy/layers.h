@@ -72,6 +72,9 @@ std::vector<Estimate3> underCoat(const Layers& layers, const Vec3& view, std::sp
 /// The same of light that is the same from everywhere.
 Estimate3 underCoatAround(const Layers& layers, const Vec3& view, size_t paths, uint64_t seed);
 
+/// The same with what the coat's surface sends back: all that is seen under a white sky.
+Estimate3 seenAround(const Layers& layers, const Vec3& view, size_t paths, uint64_t seed);
+
 /// BRDF times the light's cosine of the coat's own boundary: one bounce, Fresnel at the facet,
 /// height-correlated masking.
 double coatLobe(const Layers& layers, const Vec3& view, const Vec3& light);

@@ -8,6 +8,7 @@
 
 #include "accuracy/antialiasing.h"
 #include "accuracy/openpbr.h"
+#include "accuracy/grid.h"
 #include "accuracy/profiles.h"
 
 namespace lacquer::accuracy {
@@ -109,6 +110,7 @@ std::string table(std::string_view name) {
   if (name == "rough") return roughTable();
   if (name == "antialiasing") return antialiasingTable();
   if (name == "openpbr") return openPbrTable();
+  if (name == "grid") return gridTable();
   for (const Light light : {Light::Direct, Light::Environment}) {
     for (const double tint : {1.0, 0.5}) {
       const std::string kind = light == Light::Direct ? "direct" : "environment";
