@@ -59,9 +59,12 @@ Result<void> simplifyBuilt(graph::Graph& graph, const lang::Library& library, co
 /// but for words that simplify.
 Diagnostics asksToBuild(const Options& options);
 
+/// The switch by which highlights hold still that are smaller than a pixel (docs/accuracy.md).
+inline constexpr std::string_view kAntialiasing = "specular_antialiasing";
+
 /// The words that may change the graph of a material, in a fixed order: every term, part and lod of the
-/// library, every switch the other way, every variant of every node, every texture that is dropped. None has
-/// been tried. `graph` is the material's; without one (null) it is a graph of one's own, whose terms stay.
+/// library, every switch the other way, but those of antialiasing, every variant of every node, every texture
+/// that is dropped. None has been tried. `graph` is the material's; without one (null) it is a graph of one's own, whose terms stay.
 Strings possibleWords(const graph::Graph& graph, const material::Material* material, const Language& language,
                       const Options& options);
 

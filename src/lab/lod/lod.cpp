@@ -88,6 +88,9 @@ public:
     language_ = *library;
     if (Result<void> named = resolveNames(*language_, options_); !named)
       return tl::make_unexpected(std::move(named.error()));
+    // Levels are for what is small in the picture: highlights must hold still there.
+    if (language_->has(lang::DeclKind::Switch, kAntialiasing))
+      options_.switches.try_emplace(std::string(kAntialiasing), true);
     warnWithoutDriver();
     Strings missing = materials;
     std::vector<Input> read_files;
