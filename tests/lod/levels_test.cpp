@@ -145,6 +145,7 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   const json& answer = chain();
   const json& level = answer["materials"][0]["levels"].back();
   Options named = options;
+  named.switches["specular_antialiasing"] = true;  // as in all levels
   const auto language = libraryFor(named);
   ASSERT_TRUE(language.has_value());
   ASSERT_TRUE(resolveNames(**language, named).has_value());
@@ -164,6 +165,25 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   EXPECT_EQ(seen.delta_e, level["error"]["delta_e"]["mean"].get<double>());
   EXPECT_EQ(seen.flip_95, level["error"]["flip"]["p95"].get<double>());
   EXPECT_GT(seen.delta_e, 0);
+}
+
+/// Highlights hold still in every level, unless somebody says no; nothing that is tried takes it off.
+TEST_F(Levels, AreAntialiased) {
+  const auto derivatives = [](const fs::path& folder, const json& answer) {
+    size_t count = 0;
+    for (const json& level : answer["materials"][0]["levels"]) {
+      const std::string shader = level["shader"].get<std::string>();
+      const json manifest = json::parse(readFile(folder / "manifest.json"));
+      const std::string file = manifest["shaders"][shader]["files"]["glsl"]["frag"].get<std::string>();
+      count += readFile(folder / file).find("dFdx(") != std::string::npos ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(derivatives(chainFolder(), chain()), chain()["materials"][0]["levels"].size());
+  Options off = quick();
+  off.switches["specular_antialiasing"] = false;
+  const json plain = make(work("w1"), chainLod({}), off);
+  EXPECT_EQ(derivatives(folder_ / "out", plain), 0U);
 }
 
 /// What stands for a texture is the mean of the texels that it is made of, decoded before the mean is taken.
