@@ -39,7 +39,7 @@ function(lacquer_module)
   set_target_properties(lacquer_wasm PROPERTIES OUTPUT_NAME lacquer SUFFIX .wasm)
   target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_eval lacquer_targets lacquer_check lacquer_vulkan lacquer_cost lacquer_run stb
                         lacquer_warnings)
-  target_link_options(lacquer_wasm PRIVATE -Os --no-entry "-sEXPORTED_FUNCTIONS=${names}" -sSTANDALONE_WASM=1
+  target_link_options(lacquer_wasm PRIVATE -Oz --no-entry "-sEXPORTED_FUNCTIONS=${names}" -sSTANDALONE_WASM=1
                       -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=16777216)
   set_property(TARGET lacquer_wasm APPEND PROPERTY LINK_DEPENDS "${PROJECT_SOURCE_DIR}/src/lacquer_c.h")
 endfunction()
