@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "accuracy/antialiasing.h"
-#include "accuracy/openpbr.h"
 #include "accuracy/grid.h"
+#include "accuracy/openpbr.h"
 #include "accuracy/profiles.h"
 
 namespace lacquer::accuracy {

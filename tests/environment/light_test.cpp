@@ -222,7 +222,9 @@ TEST(EnvironmentLights, OfTheSceneInEitherSpelling) {
   EXPECT_EQ(radianceOf(readOf(only)), 1);
   EXPECT_EQ(readOf(json::parse(R"({"asset": {"version": "2.0"}})")).said,
             "x.gltf: error: the file's scene has no environment [no-environment]\n"
-            "  help: KHR_lights_environment, or KHR_environment_map, gives it one");
+            "  help: KHR_lights_environment, or KHR_environment_map, gives it one; of several lights the "
+            "scene names "
+            "one");
 }
 
 /// Coefficients are of the irradiance: over pi they are what the map holds. No light is negative.
@@ -243,6 +245,20 @@ TEST(EnvironmentLights, CoefficientsStandForTheCubesIrradiance) {
   EXPECT_NEAR(at(2)[2], 3 * 0.48860251 / std::numbers::pi, 1e-3) << "above";
   EXPECT_EQ(at(3)[2], 0) << "below";
   EXPECT_NEAR(maps.specular[0].texels[0][0], 6, 1e-6) << "the cube is what surfaces mirror";
+}
+
+/// A box that shaders cannot hold is cut; one that lies beyond is none.
+TEST(EnvironmentLights, ABoxEndsSomewhere) {
+  json gltf = file();
+  json& light = gltf["extensions"][kNames[0]]["lights"][1];
+  light["boundingBoxMin"] = {-1e30, -2, -3};
+  light["boundingBoxMax"] = {1e7, 2, 3};
+  const Read cut = readOf(gltf);
+  ASSERT_TRUE(cut.surroundings && cut.surroundings->box);
+  EXPECT_EQ(cut.surroundings->box->min[0], -1e6);
+  EXPECT_EQ(cut.surroundings->box->max[0], 1e6);
+  light["boundingBoxMin"][0] = 2e6;
+  EXPECT_FALSE(readOf(gltf).surroundings->box);
 }
 
 TEST(EnvironmentLights, FilesHaveTheBox) {
@@ -343,6 +359,18 @@ const Wrong kWrong[] = {
        lightOf(j)["boundingBoxMax"] = {1, 0, 1};
      },
      "/boundingBoxMax/1: error: the box ends at 0 and begins at 0"},
+    {"a box beyond all",
+     [](json& j) {
+       lightOf(j)["boundingBoxMin"] = {-1e30, -1, -1};
+       lightOf(j)["boundingBoxMax"] = {1, 1, 1};
+     },
+     "/lights/1: warning: the box ends farther away than shaders take"},
+    {"coefficients beyond all",
+     [](json& j) {
+       lightOf(j)["irradianceCoefficients"] = json(9, json::array({1, 1, 1}));
+       lightOf(j)["irradianceFactor"] = 1e30;
+     },
+     "warning: the irradiance by the coefficients may be larger than 65408"},
     {"another type", [](json& j) { j["extensions"][kNames[0]]["images"][0]["mimeType"] = "image/png"; },
      "/images/0/mimeType: warning: the environment's image is of another type"},
     {"another medium", [](json& j) { lightOf(j)["ior"] = 1.3; },
@@ -375,6 +403,7 @@ TEST(EnvironmentLights, AreCheckedWithTheScene) {
   for (const Wrong& one : kWrong) {
     json gltf = file();
     one.change(gltf);
+    // What the bytes are, and what comes of them, whoever makes maps is told.
     if (std::string_view(one.says).starts_with("/")) {
       Messages messages;
       Scene::fromMemory(gltf.dump(), "x.gltf", {}, messages);

@@ -302,7 +302,8 @@ Strings possibleWords(const graph::Graph& graph, const material::Material* mater
   for (const std::string_view name : language.names(lang::DeclKind::Lod))
     words.push_back(fmt::format("lod:{}", name));
   for (const auto& [name, value] : switchesOf(language, options)) {
-    // What is smaller than a pixel is in no picture of one sample for each, without neighbours to differ from.
+    // What is smaller than a pixel is in no picture of one sample for each, without neighbours to differ
+    // from.
     if (name == kAntialiasing || name == "pixel_lobes") continue;
     words.push_back(fmt::format("switch:{}={}", name, value ? "off" : "on"));
   }

@@ -64,7 +64,8 @@ inline constexpr std::string_view kAntialiasing = "specular_antialiasing";
 
 /// The words that may change the graph of a material, in a fixed order: every term, part and lod of the
 /// library, every switch the other way, but those of antialiasing, every variant of every node, every texture
-/// that is dropped. None has been tried. `graph` is the material's; without one (null) it is a graph of one's own, whose terms stay.
+/// that is dropped. None has been tried. `graph` is the material's; without one (null) it is a graph of one's
+/// own, whose terms stay.
 Strings possibleWords(const graph::Graph& graph, const material::Material* material, const Language& language,
                       const Options& options);
 

@@ -44,7 +44,7 @@ void addPreview(CLI::App& verb, PreviewFlags& flags, OptionFlags& options) {
       ->check(kNotEmpty);
   addValueLook(verb, flags.preview.look);
   verb.add_option("--environment", flags.preview.environment,
-                  "a picture of the surroundings, .hdr or .exr: the light in place of the studio's")
+                  "surroundings, as `lacquer environment` reads them: the light in place of the studio's")
       ->check(kNotEmpty);
   addJobs(verb, options);
   verb.add_flag("--json", flags.json, "what was measured, as JSON");

@@ -1,4 +1,7 @@
 // The environment of a glTF file's scene: KHR_lights_environment.
+#include <fmt/format.h>
+
+#include <cmath>
 #include <numbers>
 
 #include "environment/cube.h"
@@ -7,6 +10,30 @@
 #include "gltf/texture_source.h"
 
 namespace lacquer::environment {
+
+namespace {
+
+/// Warns where the harmonics may pass what the maps' formats hold: none of them is greater than 1.1.
+void checkIrradiance(const gltf::EnvironmentLight& light, const Place& place, Diagnostics& warnings) {
+  constexpr double kLargest = 1.1;
+  for (size_t i = 0; i < 3; ++i) {
+    double most = 0;
+    for (const gltf::Numbers3& one : *light.irradiance)
+      most += std::abs(one[i]) * kLargest / std::numbers::pi;
+    if (most <= texture::kMostRadiance) continue;
+    warnings.push_back(
+        {"environment-numbers",
+         Severity::Warning,
+         place,
+         fmt::format("the irradiance by the coefficients may be larger than {}", texture::kMostRadiance),
+         "scale the light down, and environment_intensity up; what the cubes' formats hold "
+         "takes its place",
+         {}});
+    return;
+  }
+}
+
+}  // namespace
 
 Result<Surroundings> readSceneLight(std::string_view bytes, const std::string& file, bool in_memory,
                                     const SurroundingsAccess& access, Diagnostics& warnings) {
@@ -31,6 +58,7 @@ Result<Surroundings> readSceneLight(std::string_view bytes, const std::string& f
   made.picture = std::move(*cube);
   if (light->irradiance) {
     made.irradiance.emplace();
+    checkIrradiance(*light, place, warnings);
     for (size_t k = 0; k < 9; ++k) {
       for (size_t i = 0; i < 3; ++i) (*made.irradiance)[k][i] = (*light->irradiance)[k][i] / std::numbers::pi;
     }

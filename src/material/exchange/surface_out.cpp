@@ -155,6 +155,7 @@ private:
   }
   void row(const Row& row);
   void base(std::string_view color, std::string_view alpha);
+  void tintedTransmission();
   std::optional<Source> mapped(std::string_view path);
   void normal(std::string_view input, std::string_view path);
   double tiling(const material::Material::Texture& texture);
@@ -684,9 +685,23 @@ void Translation::openPbr() {
     put("coat_darkening", "float", {0});
     normal("geometry_coat_normal", EXT "clearcoat/clearcoatNormalTexture");
   }
+  tintedTransmission();
   // Its surface is always a volume's unless its walls are thin.
   if (number(EXT "volume/thicknessFactor") == nullptr && speaksOf(EXT "transmission/"))
     put("geometry_thin_walled", "boolean", {1});
+}
+
+/// In glTF the base's colour tints what passes, in OpenPBR a colour of its own, which is the body's where
+/// that absorbs.
+void Translation::tintedTransmission() {
+  const Components* factor = number("pbrMetallicRoughness/baseColorFactor");
+  const bool textured = texture("pbrMetallicRoughness/baseColorTexture") != nullptr;
+  const bool white = factor == nullptr || ((*factor)[0] == 1 && (*factor)[1] == 1 && (*factor)[2] == 1);
+  if (!speaksOf(EXT "transmission/") || (white && !textured)) return;
+  if (!textured && !speaksOf(EXT "volume/attenuation")) return base("transmission_color", "");
+  warn(fmt::format("/materials/{}/{}", material_.index, EXT "transmission"),
+       "the base's colour tints what passes through it, and not in OpenPBR",
+       "what passes has the colour of the body alone: gltf_pbr says the same as glTF");
 }
 
 void Translation::unlit() {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "gltf/reading.h"
 #include "support/text.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::string_view kKtx2 = "image/ktx2";
 constexpr double kMostLayers = 2048;
+constexpr double kFarthest = 1e6;  ///< of a box's corners, as the shaders' block has it
 
 /// One of the two spellings of a member.
 const Json* either(const Json& owner, std::string_view one, std::string_view other, std::string_view& name) {
@@ -130,6 +133,18 @@ private:
       return report_.error("out-of-range", Path(corner, i),
                            fmt::format("the box ends at {} and begins at {}", found[1][i], found[0][i]),
                            "its end is greater than its beginning");
+    }
+    for (Numbers3& corner : found) {
+      for (double& x : corner) {
+        if (std::abs(x) <= kFarthest) continue;
+        report_.warning("out-of-range", path, "the box ends farther away than shaders take",
+                        "it is cut at a million metres, which is as good as endless");
+        x = std::copysign(kFarthest, x);
+      }
+    }
+    // A box beyond that is nowhere.
+    for (size_t i = 0; i < 3; ++i) {
+      if (!(found[0][i] < found[1][i])) return;
     }
     made.box = found;
   }
@@ -267,8 +282,10 @@ Result<EnvironmentLight> environmentOf(const Json& root, int scene, const std::s
     if (made.image != nullptr) return made;
   }
   if (hasError(found)) return tl::make_unexpected(std::move(found));
-  return none("the file's scene has no environment",
-              "KHR_lights_environment, or KHR_environment_map, gives it one");
+  return none(
+      "the file's scene has no environment",
+      "KHR_lights_environment, or KHR_environment_map, gives it one; of several lights the scene names "
+      "one");
 }
 
 }  // namespace lacquer::gltf
