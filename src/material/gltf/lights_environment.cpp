@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kKtx2 = "image/ktx2";
 constexpr double kMostLayers = 2048;
-constexpr double kFarthest = 1e6;  ///< of a box's corners, as the shaders' block has it
+constexpr double kFarthestCorner = 1e6;  ///< of a box's corners, as the shaders' block has it
 
 /// One of the two spellings of a member.
 const Json* either(const Json& owner, std::string_view one, std::string_view other, std::string_view& name) {
@@ -136,10 +136,10 @@ private:
     }
     for (Numbers3& corner : found) {
       for (double& x : corner) {
-        if (std::abs(x) <= kFarthest) continue;
+        if (std::abs(x) <= kFarthestCorner) continue;
         report_.warning("out-of-range", path, "the box ends farther away than shaders take",
                         "it is cut at a million metres, which is as good as endless");
-        x = std::copysign(kFarthest, x);
+        x = std::copysign(kFarthestCorner, x);
       }
     }
     // A box beyond that is nowhere.
