@@ -687,8 +687,10 @@ void Translation::openPbr() {
   }
   tintedTransmission();
   // Its surface is always a volume's unless its walls are thin.
-  if (number(EXT "volume/thicknessFactor") == nullptr && speaksOf(EXT "transmission/"))
+  if (number(EXT "volume/thicknessFactor") == nullptr && speaksOf(EXT "transmission/")) {
     put("geometry_thin_walled", "boolean", {1});
+    used_.insert("doubleSided");  // as such walls are
+  }
 }
 
 /// In glTF the base's colour tints what passes, in OpenPBR a colour of its own, which is the body's where
