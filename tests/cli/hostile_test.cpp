@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "command.h"
+#include "support/base64.h"
 #include "support/cases.h"
 
 namespace lacquer::test::hostile_test {
@@ -24,19 +25,7 @@ std::string textured(const std::string& uri) {
 "materials": [{"name": "M", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]})";
 }
 
-std::string base64(const std::string& bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t three = 0;
-    for (size_t k = 0; k < 3; ++k)
-      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63U];
-  }
-  return text;
-}
-
-std::string dataUri(const std::string& bytes) { return "data:image/png;base64," + base64(bytes); }
+std::string dataUri(const std::string& bytes) { return "data:image/png;base64," + toBase64(bytes); }
 
 std::string word(uint32_t x) {
   std::string bytes;

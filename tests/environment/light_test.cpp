@@ -13,6 +13,7 @@
 #include "environment/surroundings.h"
 #include "lacquer.h"
 #include "scene.h"
+#include "support/base64.h"
 
 namespace lacquer::test {
 namespace light_test {
@@ -160,17 +161,7 @@ TEST(CubeMaps, AreFilteredAsPicturesAre) {
 
 constexpr const char* kNames[] = {"KHR_lights_environment", "KHR_environment_map"};
 
-std::string uriOf(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text = "data:image/ktx2;base64,";
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
+std::string uriOf(const std::string& bytes) { return "data:image/ktx2;base64," + toBase64(bytes); }
 
 /// Two cubes of one texel to a face, of 1 and of 3, as two layers of one file, and two lights.
 json file(const std::string& name = kNames[0], bool other_words = false) {

@@ -9,23 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "gltf/geometry.h"
+#include "support/base64.h"
 
 namespace lacquer::gltf {
 namespace {
 
 using nlohmann::json;
-
-std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 void append(std::string& bytes, const std::vector<float>& values) {
   const size_t at = bytes.size();
@@ -49,7 +38,7 @@ json square() {
        {{{"primitives",
           {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}, {"indices", 2}, {"material", 1}}}}}}},
       {"buffers",
-       {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}}},
+       {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + toBase64(bytes)}}}},
       {"bufferViews",
        {{{"buffer", 0}, {"byteLength", 48}},
         {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 32}},
@@ -143,7 +132,7 @@ TEST(Geometry, WhatIsWrongIsLeftOut) {
        [](json& f) {
          std::string bytes;
          append(bytes, {0, 0, 0, std::numeric_limits<float>::quiet_NaN(), 0, 0, 1, 1, 0, 0, 1, 0});
-         f["buffers"].push_back({{"uri", "data:x;base64," + base64(bytes)}});
+         f["buffers"].push_back({{"uri", "data:x;base64," + toBase64(bytes)}});
          f["bufferViews"][0]["buffer"] = 1;
        }},
   };
@@ -193,7 +182,7 @@ TEST(Geometry, WhatComesToNothingIsNotTriedForEver) {
     for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(i >> shift & 0xFFU);
   }
   const size_t positions = 12 * (kCount + 1);
-  file["buffers"].push_back({{"uri", "data:x;base64," + base64(bytes)}});
+  file["buffers"].push_back({{"uri", "data:x;base64," + toBase64(bytes)}});
   file["bufferViews"] = {{{"buffer", 1}, {"byteLength", positions}},
                          {{"buffer", 1}, {"byteOffset", positions}, {"byteLength", 12}}};
   file["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"count", kCount + 1}, {"type", "VEC3"}},
@@ -233,7 +222,7 @@ TEST(Geometry, ATangentsSignIsOne) {
   json file = square();
   std::string bytes;
   for (int i = 0; i < 4; ++i) append(bytes, {0, 0, 1, 2, 0, 0, i % 2 == 0 ? 0.25F : -1e30F});
-  file["buffers"].push_back({{"uri", "data:x;base64," + base64(bytes)}});
+  file["buffers"].push_back({{"uri", "data:x;base64," + toBase64(bytes)}});
   file["bufferViews"].push_back({{"buffer", 1}, {"byteLength", bytes.size()}, {"byteStride", 28}});
   file["accessors"].push_back({{"bufferView", 3}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}});
   file["accessors"].push_back(

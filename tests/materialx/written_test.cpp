@@ -95,6 +95,26 @@ const bool kWritten =
     registerCases("Written", sourceFolder() / "tests/materialx/written", ".case",
                   [](Case& c) { runWritten(c, c.input().starts_with('{') ? "case.gltf" : "case.mtlx"); });
 
+/// OpenPBR has one colour for what passes: where the body absorbs, the base's tint is lost, and said.
+TEST(WrittenTransmission, ATintBesideAbsorptionIsSaid) {
+  const auto saidOf = [](const std::string& volume) {
+    return allOf(writtenOf(documentOf(R"({"asset": {"version": "2.0"}, "materials": [{
+        "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.3, 0.1, 1], "metallicFactor": 0},
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
+                       "KHR_materials_volume": {"thicknessFactor": 1)" +
+                                          volume + R"(},
+                       "LACQUER_materials_specular_haze": {"specularHazeFactor": 0.5}}}]})",
+                                      "case.gltf"))
+                     .said);
+  };
+  EXPECT_EQ(saidOf(""), "");
+  EXPECT_NE(
+      saidOf(R"(, "attenuationDistance": 2, "attenuationColor": [0.5, 0.9, 0.5])")
+          .find("/materials/0/extensions/KHR_materials_transmission: warning: the base's colour tints what "
+                "passes through it, and not in OpenPBR [not-said]"),
+      std::string::npos);
+}
+
 /// What MaterialX says of documents: nothing for those that are valid. Nothing at all where it is not there.
 std::optional<std::string> peerSays(const std::map<std::string, std::string>& documents) {
   const char* named = std::getenv("LACQUER_MATERIALX");

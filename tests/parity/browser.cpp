@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "support/base64.h"
 #include "support/cases.h"
 
 namespace lacquer::parity {
@@ -19,14 +20,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 std::string base64(const std::vector<unsigned char>& bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
+  return toBase64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 bool isList(const ir::Module& module, const vulkan::UniformBlock& block) {

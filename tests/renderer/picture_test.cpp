@@ -11,6 +11,7 @@
 #include <set>
 
 #include "renderer.h"
+#include "support/base64.h"
 
 namespace lacquer::test::picture_test {
 namespace {
@@ -238,15 +239,7 @@ std::string cubeOf(const std::array<std::array<float, 3>, 6>& faces) {
   for (const auto& color : faces) {
     for (size_t i = 0; i < kTexels; ++i) file.append(reinterpret_cast<const char*>(color.data()), 12);
   }
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text = "data:image/ktx2;base64,";
-  file.resize((file.size() + 2) / 3 * 3);
-  for (size_t i = 0; i < file.size(); i += 3) {
-    uint32_t bits = 0;
-    for (size_t k = 0; k < 3; ++k) bits = bits << 8 | static_cast<unsigned char>(file[i + k]);
-    for (size_t k = 0; k < 4; ++k) text += kDigits[bits >> (18 - 6 * k) & 63];
-  }
-  return text;
+  return "data:image/ktx2;base64," + toBase64(file);
 }
 
 /// The model in surroundings of its own.
