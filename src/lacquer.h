@@ -6,7 +6,8 @@
 /// Errors. Bad input and bad arguments give messages, never an exception: a function that can fail takes a
 /// Messages, appends to it at least one of Level::Error when it fails, and returns something empty or false.
 /// What cannot fail takes none, and says what it returns for an index or an enumerator that does not exist.
-/// Only std::bad_alloc and what a callback throws come out of a call.
+/// Only std::bad_alloc and what a callback throws come out of a call. Where there is no memory left even to
+/// take a JSON document down, the program ends.
 ///
 /// Empty handles. A Scene, Graph or Shader that was made by its default constructor, was moved from or is the
 /// result of a failed call is empty: `operator bool` is false. It may be used like any other. What it is

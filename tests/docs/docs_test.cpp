@@ -88,7 +88,8 @@ TEST(Docs, LinksLeadToFiles) {
       // A lambda's `[](int x)` in a block of code looks like a link, too; its parameters hold a space.
       if (path.empty() || path.find("://") != std::string::npos || path.find(' ') != std::string::npos)
         continue;
-      // The page is made by `./dev web`, after the tests: what can be held here is that its build makes a file of this name.
+      // The page is made by `./dev web`, after the tests: what can be held here is that its build makes a
+      // file of this name.
       const fs::path target = (file.parent_path() / path).lexically_normal();
       if (target == sourceFolder() / "build/web/view.html") {
         EXPECT_NE(readFile(sourceFolder() / "web/build.mjs").find("'view.html'"), std::string::npos);

@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "json/path.h"
 #include "support/text.h"
+
+template class nlohmann::basic_json<nlohmann::ordered_map>;
 
 namespace lacquer::json {
 
@@ -44,8 +46,10 @@ size_t tooDeep(std::string_view text, size_t deepest) {
 constexpr size_t kMostNoted = 1U << 16U;
 
 /// Builds the tree from the parser's events. The library's own builder looks for each new member among those
-/// before it, which takes quadratic time in a large object; here doubles are dropped once, at the end.
-class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
+/// before it, which takes quadratic time in a large object; here doubles are dropped once, at the end. What
+/// is in an open container waits beside the others, so that the container is made at its size: the library
+/// copies an object's members where it grows.
+class TreeBuilder : public nlohmann::json_sax<Json> {
 public:
   explicit TreeBuilder(uint64_t most) : most_(most) {}
 
@@ -59,21 +63,31 @@ public:
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
   bool binary(binary_t&) override { return false; }  // no text holds it
-  bool start_object(std::size_t) override { return open(Json::object()); }
-  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool start_object(std::size_t) override { return open(true); }
+  bool start_array(std::size_t) override { return open(false); }
   bool key(string_t& value) override {
     key_ = std::move(value);
     return true;
   }
   bool end_object() override {
-    dropDoubles(open_.back()->items());
-    open_.back()->index();
-    open_.pop_back();
-    return true;
+    const std::span<Waiting> members = inside();
+    const std::vector<bool> dropped = doubled(members);
+    Json object = Json::object();
+    auto& made = object.get_ref<Json::object_t&>();
+    made.reserve(members.size());
+    for (size_t i = 0; i < members.size(); ++i) {
+      if (dropped.empty() || !dropped[i])
+        made.emplace_back(std::move(members[i].name), std::move(members[i].value));
+    }
+    return close(std::move(object));
   }
   bool end_array() override {
-    open_.pop_back();
-    return true;
+    const std::span<Waiting> elements = inside();
+    Json array = Json::array();
+    auto& made = array.get_ref<Json::array_t&>();
+    made.reserve(elements.size());
+    for (Waiting& element : elements) made.push_back(std::move(element.value));
+    return close(std::move(array));
   }
   bool parse_error(std::size_t position, const std::string& token,
                    const nlohmann::detail::exception& e) override {
@@ -93,8 +107,15 @@ public:
   size_t errorPosition = 0;  ///< bytes read until then
 
 private:
-  /// False when there is no room for one more value, which ends the reading.
-  bool count() { return ++values_ <= most_; }
+  struct Waiting {
+    std::string name;  ///< of a member
+    Json value;
+  };
+  struct Open {
+    size_t first;  ///< place in `waiting_` of what is in it
+    bool object;
+    std::string name;  ///< as a member
+  };
 
   template <class T>
   bool add(T&& value) {
@@ -103,64 +124,68 @@ private:
     return true;
   }
 
-  bool open(Json container) {
+  /// False when there is no room for one more value, which ends the reading.
+  bool count() { return ++values_ <= most_; }
+
+  bool open(bool object) {
     if (!count()) return false;
-    open_.push_back(place(std::move(container)));
+    open_.push_back({waiting_.size(), object, std::move(key_)});
     return true;
   }
 
-  /// Puts a value where the parser stands. Pointers in `open_` stay valid: what is open is the last of its
-  /// parent.
-  Json* place(Json value) {
-    if (open_.empty()) {
-      root = std::move(value);
-      return &root;
-    }
-    if (open_.back()->is_array()) {
-      open_.back()->push_back(std::move(value));
-      return open_.back()->end() - 1;
-    }
-    Json::Members& members = open_.back()->items();
-    members.emplace_back(std::move(key_), std::move(value));
-    return &members.back().second;
+  std::span<Waiting> inside() { return std::span(waiting_).subspan(open_.back().first); }
+
+  bool close(Json made) {
+    waiting_.erase(waiting_.begin() + static_cast<ptrdiff_t>(open_.back().first), waiting_.end());
+    key_ = std::move(open_.back().name);
+    open_.pop_back();
+    place(std::move(made));
+    return true;
   }
 
-  /// The JSON pointer of the innermost open object: what is open is the last of its parent.
+  /// Puts a value where the parser stands.
+  void place(Json value) {
+    if (open_.empty())
+      root = std::move(value);
+    else
+      waiting_.push_back({std::move(key_), std::move(value)});
+  }
+
+  /// The JSON pointer of the innermost open container.
   std::string pointer() const { return pointer(Path(), 0); }
   std::string pointer(const Path& path, size_t depth) const {
     if (depth + 1 >= open_.size()) return path.text();
-    const Json& parent = *open_[depth];
-    if (parent.is_array()) return pointer(Path(path, parent.size() - 1), depth + 1);
-    return pointer(Path(path, parent.items().back().first), depth + 1);
+    const Open& parent = open_[depth];
+    const Open& child = open_[depth + 1];
+    if (parent.object) return pointer(Path(path, child.name), depth + 1);
+    return pointer(Path(path, child.first - parent.first), depth + 1);
   }
 
-  void dropDoubles(Json::Members& members) {
+  /// By member whether another one of its name follows; empty where none does. They are noted.
+  std::vector<bool> doubled(std::span<const Waiting> members) {
+    if (members.size() < 2) return {};
     std::vector<size_t> order(members.size());
     std::iota(order.begin(), order.end(), size_t{0});
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-      const int compared = members[a].first.compare(members[b].first);
+      const int compared = members[a].name.compare(members[b].name);
       return compared < 0 || (compared == 0 && a < b);
     });
-    std::vector<bool> dropped(members.size());
-    bool any = false;
+    std::vector<bool> dropped;
     for (size_t i = 1; i < order.size(); ++i) {
-      if (members[order[i - 1]].first != members[order[i]].first) continue;
-      dropped[order[i - 1]] = any = true;
+      if (members[order[i - 1]].name != members[order[i]].name) continue;
+      dropped.resize(members.size());
+      dropped[order[i - 1]] = true;
     }
-    if (!any) return;
-    for (size_t i = 0; i < members.size() && noted_ < kMostNoted; ++i) {
+    for (size_t i = 0; i < dropped.size() && noted_ < kMostNoted; ++i) {
       if (!dropped[i]) continue;
-      doubles.emplace_back(pointer(), members[i].first);
+      doubles.emplace_back(pointer(), members[i].name);
       noted_ += 1 + doubles.back().first.size() + doubles.back().second.size();
     }
-    Json::Members kept;
-    for (size_t i = 0; i < members.size(); ++i) {
-      if (!dropped[i]) kept.emplace_back(members[i].first, std::move(members[i].second));
-    }
-    members = std::move(kept);
+    return dropped;
   }
 
-  std::vector<Json*> open_;
+  std::vector<Waiting> waiting_;  ///< what is complete in open containers, of the outer ones first
+  std::vector<Open> open_;
   std::string key_;
   uint64_t most_, values_ = 0;
   size_t noted_ = 0;  ///< bytes of doubles
@@ -258,7 +283,7 @@ Result<Json> build(std::string_view text, const std::string& file, const Limits&
     return tl::make_unexpected(Diagnostics{diagnostic});
   }
   TreeBuilder builder(limits.values);
-  if (nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) {
+  if (Json::sax_parse(text.begin(), text.end(), &builder)) {
     doubles = std::move(builder.doubles);
     return std::move(builder.root);
   }
@@ -310,21 +335,56 @@ Json reread(std::string_view text) {
   return std::move(*json);
 }
 
-const Json* member(const Json& object, std::string_view key) { return object.find(key); }
+const Json* member(const Json& object, std::string_view key) {
+  const auto* members = object.get_ptr<const Json::object_t*>();
+  if (members == nullptr) return nullptr;
+  for (const auto& [name, value] : *members) {
+    if (name == key) return &value;
+  }
+  return nullptr;
+}
+
+const Json& at(const Json& object, std::string_view key) {
+  static const Json kNull;
+  const Json* found = member(object, key);
+  return found == nullptr ? kNull : *found;
+}
+
+std::span<const Json> elements(const Json& array) {
+  const auto* all = array.get_ptr<const Json::array_t*>();
+  return all == nullptr ? std::span<const Json>() : std::span<const Json>(*all);
+}
 
 std::string_view describe(const Json& value) {
-  switch (value.kind()) {
-    case Json::Kind::Null: return "null";
-    case Json::Kind::Object: return "an object";
-    case Json::Kind::Array: return "an array";
-    case Json::Kind::String: return "a string";
-    case Json::Kind::Boolean: return "a boolean";
-    case Json::Kind::Integer:
-    case Json::Kind::Unsigned:
-    case Json::Kind::Float: return "a number";
+  switch (value.type()) {
+    case Json::value_t::null: return "null";
+    case Json::value_t::object: return "an object";
+    case Json::value_t::array: return "an array";
+    case Json::value_t::string: return "a string";
+    case Json::value_t::boolean: return "a boolean";
+    case Json::value_t::number_integer:
+    case Json::value_t::number_unsigned:
+    case Json::value_t::number_float: return "a number";
+    case Json::value_t::binary:
+    case Json::value_t::discarded: break;  // no text holds them
   }
   return "";
 }
+
+std::string dump(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string quotedText(std::string_view text) {
+  const bool plain = std::all_of(text.begin(), text.end(),
+                                 [](char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; });
+  if (!plain) return dump(text);
+  std::string all;
+  all.reserve(text.size() + 2);
+  return all.append(1, '"').append(text).append(1, '"');
+}
+
+std::string numberText(double x) { return dump(x); }
 
 size_t arraySize(const Json& object, std::string_view key) {
   const Json* array = member(object, key);

@@ -159,21 +159,23 @@ JsonText& JsonText::raw(std::string_view text) {
 }
 
 JsonText& JsonText::json(const Json& value) {
-  switch (value.kind()) {
-    case Json::Kind::Object:
+  switch (value.type()) {
+    case Json::value_t::object:
       beginObject();
       for (const auto& [name, member] : value.items()) key(name).json(member);
       return endObject();
-    case Json::Kind::Array:
+    case Json::value_t::array:
       beginArray();
-      for (const Json& element : value) json(element);
+      for (const Json& element : elements(value)) json(element);
       return endArray();
-    case Json::Kind::String: return string(value.text());
-    case Json::Kind::Boolean: return boolean(value.get<bool>());
-    case Json::Kind::Integer: return integer(value.get<int64_t>());
-    case Json::Kind::Unsigned: return raw(std::to_string(value.get<uint64_t>()));
-    case Json::Kind::Float: return number(value.get<double>());
-    case Json::Kind::Null: break;
+    case Json::value_t::string: return string(lacquer::json::text(value));
+    case Json::value_t::boolean: return boolean(value.get<bool>());
+    case Json::value_t::number_integer: return integer(value.get<int64_t>());
+    case Json::value_t::number_unsigned: return raw(std::to_string(value.get<uint64_t>()));
+    case Json::value_t::number_float: return number(value.get<double>());
+    case Json::value_t::null:
+    case Json::value_t::binary:
+    case Json::value_t::discarded: break;
   }
   return raw("null");
 }

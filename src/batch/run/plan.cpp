@@ -77,7 +77,7 @@ Diagnostics unfitForNinja(const Strings& paths, const Strings& words) {
 Diagnostics unfitForJson(const Strings& words) {
   Diagnostics wrong;
   for (const std::string& word : words) {
-    if (json::reread(json::quotedText(word)).text() == word) continue;
+    if (json::text(json::reread(json::quotedText(word))) == word) continue;
     wrong.push_back({"json-name",
                      Severity::Error,
                      {word, 0, 0, {}},

@@ -259,7 +259,7 @@ private:
     const Json* list = json::member(row, "visibility");
     if (list == nullptr || !list->is_array())
       return report_.error("missing-property", at, "the binding has no \"visibility\"");
-    for (const Json& stage : *list) {
+    for (const Json& stage : json::elements(*list)) {
       bound.vertex = bound.vertex || stage == "vertex";
       bound.fragment = bound.fragment || stage == "fragment";
     }
@@ -296,7 +296,7 @@ private:
       report_.error("unknown-property", Path(root, name), fmt::format("a manifest has no {}", quote(name)),
                     "it has " + listOf(kMembers));
     }
-    to.lacquer = json::member(json, "lacquer")->get<std::string>();
+    to.lacquer = json::text(*json::member(json, "lacquer"));
     const Path files(root, "files");
     const Json& all_files = *json::member(json, "files");
     for (size_t i = 0; i < all_files.size() && !isFull(wrong_); ++i)

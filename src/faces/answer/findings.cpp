@@ -115,12 +115,12 @@ std::string answerJson(const Proofs& proofs) {
   Json outputs = Json::array();
   for (const OutputProof& output : proofs.outputs)
     outputs.push_back({{"name", output.name}, {"reached", reachedJson(output.reached)}});
-  return Json{{"material", proofs.material},
-              {"shader", proofs.shader},
-              {"operations", std::move(operations)},
-              {"outputs", std::move(outputs)},
-              {"contracts", claimsJson(proofs.contracts)}}
-      .dump(2);
+  return json::dump({{"material", proofs.material},
+                     {"shader", proofs.shader},
+                     {"operations", std::move(operations)},
+                     {"outputs", std::move(outputs)},
+                     {"contracts", claimsJson(proofs.contracts)}},
+                    2);
 }
 
 std::string answerJson(const std::vector<NodeProof>& nodes) {
@@ -133,7 +133,7 @@ std::string answerJson(const std::vector<NodeProof>& nodes) {
     row["calls"] = claimsJson(proof.calls);
     all.push_back(std::move(row));
   }
-  return Json{{"nodes", std::move(all)}}.dump(2);
+  return json::dump({{"nodes", std::move(all)}}, 2);
 }
 
 std::string answerJson(const PreviewSheet& sheet) {
@@ -149,7 +149,7 @@ std::string answerJson(const PreviewSheet& sheet) {
                       {"rms", of.root_mean_square}});
     }
   }
-  return json.dump(2) + "\n";
+  return json::dump(json, 2) + "\n";
 }
 
 std::string answerJson(const Levels& levels) {
@@ -177,11 +177,11 @@ std::string answerJson(const StressReport& report) {
     subjects.push_back(std::move(one));
   }
   json["faults"] = report.faults;
-  return json.dump(2) + "\n";
+  return json::dump(json, 2) + "\n";
 }
 
 std::string caseText(const StressFinding& finding, const StressSubject& subject) {
-  return (finding.fault == Fault::Form ? sampleJson(finding) : caseJson(finding, subject)).dump();
+  return json::dump(finding.fault == Fault::Form ? sampleJson(finding) : caseJson(finding, subject));
 }
 
 std::string answerJson(const EnvironmentMaps& maps) { return environmentJson(maps); }
@@ -206,7 +206,7 @@ std::string answerJson(const LightProfiles& profiles) {
     one["mean_error"] = of.mean_error;
     layers.push_back(std::move(one));
   }
-  return json.dump(2) + "\n";
+  return json::dump(json, 2) + "\n";
 }
 
 }  // namespace lacquer

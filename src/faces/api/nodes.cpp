@@ -358,7 +358,7 @@ std::string nodesJson(const Options& options, Messages& messages) {
                      {"constants", rowsOf(all, DeclKind::Const, constants, constantJson)},
                      {"operations", operationsJson()},
                      {"nodes", rowsOf(all, DeclKind::Node, nodes, nodeJson)}};
-  return json.dump(2);  // a node file may hold any bytes
+  return json::dump(json, 2);  // a node file may hold any bytes
 }
 
 }  // namespace lacquer

@@ -36,7 +36,7 @@ void printJson(const std::vector<ShaderCost>& costs) {
     shaders.push_back(
         {{"shader", shader.name}, {"spirv_instructions", shader.spirv_instructions}, {"gpus", gpus}});
   }
-  fmt::print("{}\n", json::Json{{"shaders", shaders}}.dump(2));
+  fmt::print("{}\n", json::dump({{"shaders", shaders}}, 2));
 }
 
 std::string cells(const GpuCost& gpu) {

@@ -62,7 +62,7 @@ std::string titleOf(const StressSubject& subject) {
 /// A colour that is another at a threshold and beside it.
 void printForm(const StressFinding& finding, const StressSubject& subject) {
   fmt::print("  form        {} at {} = {} and beside it", printable(finding.what),
-             printable(finding.parameter), json::Json(finding.at).dump());
+             printable(finding.parameter), json::dump(finding.at));
   if (!finding.layer.empty()) fmt::print(", under {}", printable(finding.layer));
   if (std::isfinite(finding.value)) fmt::print(": differs by {:.3g}", finding.value);
   fmt::print("\n    sample: {}\n", printable(caseText(finding, subject)));

@@ -82,30 +82,33 @@ std::string range(const json::Json& item) {
   const auto end = [](const json::Json& x, const char* infinite) {
     return x.is_null() ? std::string(infinite) : fmt::format("{}", x.get<double>());
   };
-  return fmt::format(" in [{}, {}]{}", end(item["range"][0], "-inf"), end(item["range"][1], "inf"),
+  const json::Json& ends = json::at(item, "range");
+  return fmt::format(" in [{}, {}]{}", end(ends[0], "-inf"), end(ends[1], "inf"),
                      item.contains("or_zero") ? " or 0" : "");
 }
 
 /// A number as the node language writes it: whole ones without a fraction, truths as words.
 std::string number(const json::Json& value, std::string_view type) {
-  if (!value.is_number()) return value.dump();
+  if (!value.is_number()) return json::dump(value);
   if (type.starts_with('b')) return value.get<double>() != 0 ? "true" : "false";
   return fmt::format("{}", value.get<double>());
 }
 
 /// What an input is where nothing is connected: " = given uv0 or [0, 0]", " = euclidean".
 std::string byDefault(const json::Json& input) {
-  std::string text = input.contains("given") ? "given " + input["given"].get<std::string>() : std::string();
+  std::string text =
+      input.contains("given") ? "given " + json::text(json::at(input, "given")) : std::string();
   if (input.contains("default")) {
-    const json::Json& value = input["default"];
-    const auto type = input["type"].get<std::string>();
+    const json::Json& value = json::at(input, "default");
+    const auto type = json::text(json::at(input, "type"));
     std::string constant;
     if (input.contains("choices") && value.is_number()) {
       const auto place = static_cast<size_t>(std::max(value.get<double>(), 0.0));
-      const json::Json& choices = input["choices"];
-      constant = choices[std::min(place, choices.size() - 1)].get<std::string>();
+      const json::Json& choices = json::at(input, "choices");
+      constant = json::text(choices[std::min(place, choices.size() - 1)]);
     } else if (value.is_array()) {
-      for (const json::Json& one : value) constant += (constant.empty() ? "[" : ", ") + number(one, type);
+      for (const json::Json& one : json::elements(value))
+        constant += (constant.empty() ? "[" : ", ") + number(one, type);
       constant += ']';
     } else {
       constant = number(value, type);
@@ -119,29 +122,31 @@ std::string byDefault(const json::Json& input) {
 std::string choices(const json::Json& input) {
   if (!input.contains("choices")) return {};
   std::string text;
-  for (const json::Json& one : input["choices"])
-    text += (text.empty() ? " of " : ", ") + one.get<std::string>();
+  for (const json::Json& one : json::elements(json::at(input, "choices")))
+    text += (text.empty() ? " of " : ", ") + json::text(one);
   return text;
 }
 
 void printNode(const json::Json& node) {
-  fmt::print("{}\n", node["name"].get<std::string>());
-  fmt::print("    {}\n    source: {}\n", node["doc"].get<std::string>(), node["source"].get<std::string>());
-  for (const auto& input : node["inputs"]) {
+  fmt::print("{}\n", json::text(json::at(node, "name")));
+  fmt::print("    {}\n    source: {}\n", json::text(json::at(node, "doc")),
+             json::text(json::at(node, "source")));
+  for (const auto& input : json::elements(json::at(node, "inputs"))) {
     const std::string values = choices(input);
-    std::string line = fmt::format("    in   {:<10} {}{}{}", input["type"].get<std::string>(),
-                                   input["name"].get<std::string>(), values.empty() ? range(input) : values,
-                                   byDefault(input));
-    if (input.contains("meaning")) line += "  // " + input["meaning"].get<std::string>();
+    std::string line = fmt::format("    in   {:<10} {}{}{}", json::text(json::at(input, "type")),
+                                   json::text(json::at(input, "name")),
+                                   values.empty() ? range(input) : values, byDefault(input));
+    if (input.contains("meaning")) line += "  // " + json::text(json::at(input, "meaning"));
     fmt::print("{}\n", line);
   }
-  for (const auto& output : node["outputs"]) {
-    const std::string line = fmt::format("    out  {:<10} {}{}", output["type"].get<std::string>(),
-                                         output["name"].get<std::string>(), range(output));
+  for (const auto& output : json::elements(json::at(node, "outputs"))) {
+    const std::string line = fmt::format("    out  {:<10} {}{}", json::text(json::at(output, "type")),
+                                         json::text(json::at(output, "name")), range(output));
     fmt::print("{}\n", line);
   }
-  for (const auto& variant : node["variants"]) {
-    fmt::print("    variant {}  {}\n", variant["name"].get<std::string>(), variant["doc"].get<std::string>());
+  for (const auto& variant : json::elements(json::at(node, "variants"))) {
+    fmt::print("    variant {}  {}\n", json::text(json::at(variant, "name")),
+               json::text(json::at(variant, "doc")));
   }
 }
 
@@ -192,11 +197,11 @@ void printReport(const Report& report, const Options& options) {
 /// All forms of an overloaded node; false where there is none of that name.
 static bool printForms(const json::Json& nodes, const std::string& name, bool as_json) {
   json::Json forms = json::Json::array();
-  for (const auto& node : nodes) {
-    if (node["family"] == name) forms.push_back(node);
+  for (const auto& node : json::elements(nodes)) {
+    if (json::at(node, "family") == name) forms.push_back(node);
   }
   if (forms.empty()) return false;
-  if (as_json) fmt::print("{}\n", forms.dump(2));
+  if (as_json) fmt::print("{}\n", json::dump(forms, 2));
   for (size_t i = 0; !as_json && i < forms.size(); ++i) {
     if (i > 0) fmt::print("\n");
     printNode(forms[i]);
@@ -207,12 +212,12 @@ static bool printForms(const json::Json& nodes, const std::string& name, bool as
 /// Templates or profiles, each with the first sentence of its documentation.
 static void printNamed(const json::Json& all, const char* kind) {
   fmt::print("\n{}\n", kind);
-  for (const auto& one : all[kind]) {
-    std::string doc = one.contains("doc") ? one["doc"].get<std::string>() : std::string();
+  for (const auto& one : json::elements(json::at(all, kind))) {
+    std::string doc = one.contains("doc") ? json::text(json::at(one, "doc")) : std::string();
     std::replace(doc.begin(), doc.end(), '\n', ' ');
     const size_t stop = doc.find(". ");
     if (stop != std::string::npos) doc.resize(stop + 1);
-    fmt::print("{:<36} {}\n", one["name"].get<std::string>(), doc);
+    fmt::print("{:<36} {}\n", json::text(json::at(one, "name")), doc);
   }
 }
 
@@ -222,10 +227,10 @@ static std::string nodeInstead(const json::Json& nodes, const std::string& name)
   std::vector<Described> offered, all;
   std::deque<std::string> texts;
   const auto text = [&](const json::Json& node, const char* key) -> const std::string& {
-    return texts.emplace_back(node[key].get<std::string>());
+    return texts.emplace_back(json::text(json::at(node, key)));
   };
   std::string alike;  // what two vendors call alike has the vendor before it
-  for (const auto& node : nodes) {
+  for (const auto& node : json::elements(nodes)) {
     const std::string& own = text(node, "name");
     const std::string& called = text(node, "family");
     if (own.ends_with("." + name)) alike += fmt::format("{}'{}'", alike.empty() ? "" : " and ", own);
@@ -243,21 +248,21 @@ static std::string nodeInstead(const json::Json& nodes, const std::string& name)
 bool printNodes(const std::string& text, const std::string& name, bool as_json) {
   const json::Json all = json::reread(text);
   bool found = name.empty();
-  for (const auto& node : all["nodes"]) {
-    if (!name.empty() && node["name"] != name) continue;
+  for (const auto& node : json::elements(json::at(all, "nodes"))) {
+    if (!name.empty() && json::at(node, "name") != name) continue;
     found = true;
     if (name.empty() && !as_json)
-      fmt::print("{:<36} {}\n", node["name"].get<std::string>(), node["source"].get<std::string>());
-    if (!name.empty() && as_json) fmt::print("{}\n", node.dump(2));
+      fmt::print("{:<36} {}\n", json::text(json::at(node, "name")), json::text(json::at(node, "source")));
+    if (!name.empty() && as_json) fmt::print("{}\n", json::dump(node, 2));
     if (!name.empty() && !as_json) printNode(node);
   }
-  if (name.empty() && as_json) fmt::print("{}\n", all.dump(2));
+  if (name.empty() && as_json) fmt::print("{}\n", json::dump(all, 2));
   for (const char* kind : {"templates", "profiles"}) {
     if (name.empty() && !as_json) printNamed(all, kind);
   }
-  if (found || printForms(all["nodes"], name, as_json)) return true;
+  if (found || printForms(json::at(all, "nodes"), name, as_json)) return true;
   say("lacquer: error: there is no node '{}'; {} [unknown-node]\n", printable(name),
-      nodeInstead(all["nodes"], name));
+      nodeInstead(json::at(all, "nodes"), name));
   return false;
 }
 

@@ -63,7 +63,7 @@ void printJson(const Tuned& tuned) {
   }
   const json::Json all = {
       {"name", tuned.name}, {"family", tuned.family}, {"of_cycles", tuned.plain}, {"forms", forms}};
-  fmt::print("{}\n", all.dump(2));
+  fmt::print("{}\n", json::dump(all, 2));
 }
 
 bool isFile(const std::string& subject) {

@@ -58,7 +58,7 @@ Json& at(Json& from, std::string_view path) {
     const bool number = found->is_array() && key.find_first_not_of("0123456789") == std::string_view::npos;
     if (number) {
       const size_t index = std::stoul(std::string(key));
-      found = found->begin() + std::min(index, found->size() - 1);
+      found = &(*found)[std::min(index, found->size() - 1)];
     } else {
       found = &(*found)[key];
     }
@@ -96,14 +96,15 @@ struct Item {
 /// Textures without what computes them.
 void withoutProcedurals(Json& json) {
   if (json.is_object()) {
-    const Json* extensions = json.find("extensions");
+    const Json* extensions = json::member(json, "extensions");
     if (extensions != nullptr && extensions->is_object() && extensions->contains(kProcedurals)) {
       json["extensions"].erase(kProcedurals);
       if (json["extensions"].empty()) json.erase("extensions");
     }
-    for (auto& [key, value] : json.items()) withoutProcedurals(value);
   }
-  for (Json& each : json) withoutProcedurals(each);
+  if (json.is_structured()) {
+    for (Json& each : json) withoutProcedurals(each);
+  }
 }
 
 class Baking {
@@ -331,12 +332,13 @@ Result<Json> Baking::frame(const std::string& file) {
       return fail("wrong-type", {file, 0, 0, fmt::format("/{}", list)},
                   fmt::format("\"{}\" is no array", list), "glTF has a list of objects there");
     }
-    for (Json& each : gltf[list]) {
+    for (size_t i = 0; i < gltf[list].size(); ++i) {
+      Json& each = gltf[list][i];
       if (!each.is_object() || !each.contains("uri") || !each["uri"].is_string()) continue;
-      const std::string uri = each["uri"].text();
+      const std::string uri = json::text(each["uri"]);
       if (gltf::hasScheme(uri)) continue;
       const Result<std::string> relative =
-          gltf::relativePath(uri, {file, 0, 0, fmt::format("/{}/{}/uri", list, &each - gltf[list].begin())});
+          gltf::relativePath(uri, {file, 0, 0, fmt::format("/{}/{}/uri", list, i)});
       if (!relative) return tl::make_unexpected(relative.error());
       inputs_.push_back((from / *relative).string());
       each["uri"] = way_ + uri;
@@ -347,7 +349,7 @@ Result<Json> Baking::frame(const std::string& file) {
 
 /// The texture of an image beside the file.
 size_t Baking::textureOf(const std::string& uri, const Json& sampler) {
-  const auto [it, fresh] = textures_.try_emplace(uri + sampler.dump(), 0);
+  const auto [it, fresh] = textures_.try_emplace(uri + json::dump(sampler), 0);
   if (!fresh) return it->second;
   const uint64_t image = gltf_["images"].size();
   it->second = gltf_["textures"].size();
@@ -579,7 +581,7 @@ Result<void> Baking::planTextures(const std::string& file) {
       item.image = static_cast<size_t>(gltf_["textures"][number]["source"].get<uint64_t>());
       const auto [group, unknown] = groups.try_emplace(texture.info.group);
       if (unknown && rewritten) group->second = procedurals_->ofGroup(*material.patterns, texture.info.group);
-      Json& info = own ? at(gltf_["materials"].begin()[k], property.path)
+      Json& info = own ? at(gltf_["materials"][k], property.path)
                        : at(gltf_, std::string_view(texture.info.pointer).substr(1));
       info["index"] = static_cast<uint64_t>(number);
       if (rewritten && group->second.outputs.contains(texture.info.output))
@@ -698,7 +700,7 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
       return tl::make_unexpected(std::move(stored.error()));
   }
   if (alone_) return std::move(baked_);
-  if (Result<void> written = write(how_.output, gltf_.dump(2) + "\n"); !written)
+  if (Result<void> written = write(how_.output, json::dump(gltf_, 2) + "\n"); !written)
     return tl::make_unexpected(std::move(written.error()));
   baked_.output = how_.output;
   return std::move(baked_);
@@ -717,10 +719,10 @@ Result<std::string> Baking::text(const std::string& file, const Strings& materia
     if (!levels) return tl::make_unexpected(levels.error());
     const Result<Strings> made = baking::filesOf(*levels, Texels::Png, 8, items_[i].srgb);
     if (!made) return tl::make_unexpected(made.error());
-    Json& image = *(gltf_["images"].begin() + items_[i].image);
+    Json& image = gltf_["images"][items_[i].image];
     image["uri"] = "data:image/png;base64," + toBase64((*made)[0]);
   }
-  return gltf_.dump(2) + "\n";
+  return json::dump(gltf_, 2) + "\n";
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ std::string environmentJson(const EnvironmentMaps& maps) {
   }
   json["irradiance_harmonics"] = maps.irradiance_harmonics;
   if (maps.box) json["box"] = {{"min", maps.box->min}, {"max", maps.box->max}};
-  return json.dump(2) + "\n";
+  return json::dump(json, 2) + "\n";
 }
 
 std::optional<EnvironmentFiles> filterEnvironment(const Environment& environment, const std::string& picture,

@@ -236,7 +236,7 @@ void readUniforms(const Json& root, json::Report& report, EvalPoints& to) {
   if (!uniforms->is_object()) return report.wrongType(path, "uniforms", *uniforms, "an object");
   for (const auto& [name, value] : uniforms->items()) {
     const Json list = value.is_array() ? value : Json::array({value});
-    for (const Json& x : list) {
+    for (const Json& x : json::elements(list)) {
       if (x.is_number() && std::isfinite(x.get<double>())) {
         to.uniforms[name].push_back(x.get<double>());
         continue;

@@ -27,7 +27,7 @@ constexpr std::string_view kOptions = "<script type=\"application/json\" id=\"op
 /// JSON for an HTML script element: no name in it ends the element.
 std::string scriptText(const json::Json& json) {
   std::string text;
-  for (const char c : json.dump()) {
+  for (const char c : json::dump(json)) {
     if (c == '<')
       text += "\\u003c";
     else

@@ -152,11 +152,11 @@ const Edit::Kind* Edit::kind(json::Report& report, const json::Path& path) const
     report.error("unknown-edit", path, "the edit has no \"do\"", "it is one of " + listOf(names, "or"));
     return nullptr;
   }
-  const auto found = std::find(names.begin(), names.end(), does->text());
+  const auto found = std::find(names.begin(), names.end(), json::text(*does));
   if (found == names.end()) {
-    const std::string_view close = closest(does->text(), names);
+    const std::string_view close = closest(json::text(*does), names);
     report.error(
-        "unknown-edit", json::Path(path, "do"), fmt::format("there is no edit {}", quote(does->text())),
+        "unknown-edit", json::Path(path, "do"), fmt::format("there is no edit {}", quote(json::text(*does))),
         close.empty() ? "it is one of " + listOf(names, "or") : fmt::format("did you mean \"{}\"?", close));
     return nullptr;
   }
@@ -175,8 +175,8 @@ const Edit::Kind* Edit::kind(json::Report& report, const json::Path& path) const
     });
   }
   for (const auto& member : json_.items()) {
-    const auto& key = member.first;  // no structured binding: lambdas take them
-    const auto& value = member.second;
+    const std::string& key = member.key();  // no structured binding: lambdas take them
+    const json::Json& value = member.value();
     const json::Path here(path, key);
     if (key == "do") continue;
     if (key == "unchecked") {
@@ -559,7 +559,7 @@ Result<std::string> Edit::setUi() {
   Words inverse("set_ui");
   if (!of.empty()) inverse.text(of, text(of));
   if (!(*ui)->empty()) inverse.raw("ui", **ui);
-  **ui = has("ui") ? value("ui").dump() : std::string();
+  **ui = has("ui") ? json::dump(value("ui")) : std::string();
   return inverse.take();
 }
 

@@ -40,11 +40,11 @@ void readTarget(Reading& reading, const Json& target, const Path& path) {
                                   "the target has a pointer, but its path is not \"pointer\"",
                                   "the pointer is ignored");
   }
-  if (pointer == nullptr || !pointer->is_string() || !isPointer(pointer->text())) {
+  if (pointer == nullptr || !pointer->is_string() || !isPointer(json::text(*pointer))) {
     return reading.report.warning(kCode, here, "the animation's target is no JSON pointer",
                                   "write it as \"/materials/0/emissiveFactor\"");
   }
-  const auto& text = pointer->text();
+  const auto& text = json::text(*pointer);
   const std::string_view root = std::string_view(text).substr(1, text.find('/', 1) - 1);
   if (member(reading.root, root) == nullptr) {
     return reading.report.warning(kCode, here, fmt::format("{} leads nowhere", quote(text)),

@@ -120,7 +120,7 @@ size_t componentsOf(const Json& accessor) {
   if (type == nullptr || !type->is_string()) return 0;
   constexpr std::string_view kTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
   for (size_t i = 0; i < 4; ++i) {
-    if (type->text() == kTypes[i]) return i + 1;
+    if (json::text(*type) == kTypes[i]) return i + 1;
   }
   return 0;
 }

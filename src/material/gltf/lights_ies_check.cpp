@@ -40,7 +40,7 @@ void checkProfile(Reading& reading, const Json& light, const Path& path) {
   const Path here(path, "mimeType");
   if (!type->is_string()) {
     report.wrongType(here, "mimeType", *type, "a string");
-  } else if (const auto& text = type->text(); text != kIesType) {
+  } else if (const auto& text = json::text(*type); text != kIesType) {
     report.error("unknown-value", here, fmt::format("the light's mimeType is {}", quote(text)),
                  fmt::format("it must be {}", quote(kIesType)));
   }

@@ -97,7 +97,8 @@ private:
                  if (!known(name)) unread(name, here);
                  AttributeFormat format;
                  format.semantic = printable(name);
-                 if (accessor >= 0) stored(root_["accessors"][static_cast<size_t>(accessor)], format);
+                 if (accessor >= 0)
+                   stored(json::at(root_, "accessors")[static_cast<size_t>(accessor)], format);
                  checkFormat(format, here);
                  if (standsForItself(format)) out_.attributes.quantized = true;
                  out_.formats.push_back(std::move(format));
@@ -191,7 +192,7 @@ private:
 
   static void stored(const Json& accessor, AttributeFormat& out) {
     if (const Json* type = member(accessor, "type"); type != nullptr && type->is_string())
-      out.type = printable(type->text(), 16);
+      out.type = printable(json::text(*type), 16);
     const Json* component = member(accessor, "componentType");
     for (const ComponentType& row : kComponentTypes) {
       if (component != nullptr && *component == row.number) out.componentType = row.name;
@@ -284,7 +285,7 @@ void readVariants(Reading& reading, const Json& extension, const Path& path) {
                  std::string& name = reading.scene.variants.emplace_back();
                  const Json* given = member(one, "name");
                  if (given != nullptr && given->is_string())
-                   name = given->text();
+                   name = json::text(*given);
                  else if (!isStandIn(one))
                    report.warning("missing-property", p, "the variant has no \"name\"", "it must have one");
                });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -10,13 +11,6 @@
 namespace lacquer::gltf {
 
 namespace {
-
-/// The elements of an array that may be absent.
-const Json& elements(const Json& owner, std::string_view name) {
-  static const Json kNone = Json::array();
-  const Json* found = member(owner, name);
-  return found == nullptr ? kNone : *found;
-}
 
 /// The object of an extension; an empty one where there is none.
 const Json& extensionIn(const Json& owner, std::string_view name) {
@@ -40,7 +34,7 @@ void sortDistinct(std::vector<VertexAttributes>& sets) {
 /// A mesh that one node has instances of is drawn in instances wherever it is.
 void collectInstances(const Json& checked, Scene& scene) {
   std::set<size_t> meshes;
-  for (const Json& node : elements(checked, "nodes")) {
+  for (const Json& node : json::elements(json::at(checked, "nodes"))) {
     const int mesh = indexOf(extensionIn(node, "EXT_mesh_gpu_instancing"), "mesh");
     if (mesh >= 0) meshes.insert(static_cast<size_t>(mesh));
   }
@@ -61,24 +55,27 @@ void collectUses(Scene& scene) {
   sortDistinct(scene.defaultUses);
 }
 
+/// The type of a light that a node names; empty where it names none.
+std::string_view lightType(const Json& node, std::string_view extension, std::span<const Json> lights) {
+  const int light = indexOf(extensionIn(node, extension), "light");
+  if (light < 0 || static_cast<size_t>(light) >= lights.size()) return {};
+  return json::text(json::at(lights[static_cast<size_t>(light)], "type"));
+}
+
 void collectLights(const Json& checked, Scene& scene) {
-  const Json& lights = elements(extensionIn(checked, "KHR_lights_punctual"), "lights");
-  for (const Json& node : elements(checked, "nodes")) {
+  constexpr std::string_view kLights = "KHR_lights_punctual";
+  const auto nodes = json::elements(json::at(checked, "nodes"));
+  const auto lights = json::elements(json::at(extensionIn(checked, kLights), "lights"));
+  const auto areas = json::elements(json::at(extensionIn(checked, kAreaLights), "lights"));
+  for (const Json& node : nodes) {
     if (indexOf(extensionIn(node, "EXT_lights_ies"), "light") >= 0) ++scene.lights[LightType::Point];
-    const int light = indexOf(extensionIn(node, "KHR_lights_punctual"), "light");
-    if (light < 0) continue;
-    const std::string_view type = lights[static_cast<size_t>(light)]["type"].text();
+    const std::string_view type = lightType(node, kLights, lights);
     if (type == "directional") ++scene.lights[LightType::Directional];
     if (type == "point") ++scene.lights[LightType::Point];
     if (type == "spot") ++scene.lights[LightType::Spot];
-  }
-  const Json& areas = elements(extensionIn(checked, kAreaLights), "lights");
-  for (const Json& node : elements(checked, "nodes")) {
-    const int light = indexOf(extensionIn(node, kAreaLights), "light");
-    if (light < 0) continue;
-    const std::string_view type = areas[static_cast<size_t>(light)]["type"].text();
-    if (type == "rect") ++scene.lights[LightType::Rect];
-    if (type == "disk") ++scene.lights[LightType::Disk];
+    const std::string_view area = lightType(node, kAreaLights, areas);
+    if (area == "rect") ++scene.lights[LightType::Rect];
+    if (area == "disk") ++scene.lights[LightType::Disk];
   }
 }
 

@@ -143,7 +143,7 @@ void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
 Json SceneChecker::light(const Json& light, const Path& path) {
   static constexpr std::string_view kTypes[] = {"directional", "point", "spot"};
   Json made = readLightType(report_, light, path, kTypes);
-  if (made["type"].text() != "spot") return made;
+  if (json::text(made["type"]) != "spot") return made;
   const Json* spot = member(light, "spot");
   if (spot == nullptr) {
     report_.error("missing-property", path, "the spot light has no \"spot\"",
@@ -161,7 +161,7 @@ void SceneChecker::image(const Json& image, const Path& path) {
   if (const Json* uri = member(image, "uri")) {
     if (!uri->is_string()) {
       report_.wrongType(Path(path, "uri"), "uri", *uri, "a string");
-    } else if (const auto& text = uri->text(); !isDataUri(text)) {
+    } else if (const auto& text = json::text(*uri); !isDataUri(text)) {
       out.uri = text;
     } else {
       const std::string_view head = std::string_view(text).substr(kData.size());
@@ -170,7 +170,7 @@ void SceneChecker::image(const Json& image, const Path& path) {
   }
   if (const Json* type = member(image, "mimeType")) {
     if (type->is_string())
-      out.mimeType = printable(type->text());
+      out.mimeType = printable(json::text(*type));
     else
       report_.wrongType(Path(path, "mimeType"), "mimeType", *type, "a string");
   }
@@ -192,11 +192,11 @@ void SceneChecker::externalAsset(const Json& asset, const Path& path) {
   const Path here(path, "file");
   if (number == nullptr || !report_.index(here, "file", *number, arraySize(root_, "files"), "file", index))
     return;
-  const Json& file = root_["files"][static_cast<size_t>(index)];
+  const Json& file = json::at(root_, "files")[static_cast<size_t>(index)];
   const Json* uri = file.is_object() ? member(file, "uri") : nullptr;
-  const bool named = uri != nullptr && uri->is_string() && !isDataUri(uri->text());
+  const bool named = uri != nullptr && uri->is_string() && !isDataUri(json::text(*uri));
   report_.note("external-asset", here,
-               named ? fmt::format("nodes show what {} holds", quote(uri->text()))
+               named ? fmt::format("nodes show what {} holds", quote(json::text(*uri)))
                      : fmt::format("nodes show what file {} holds", index),
                "shaders for its materials are generated from that file");
 }
@@ -264,7 +264,7 @@ Json readLightType(Report& report, const Json& light, const Path& path,
     report.wrongType(here, "type", *type, "a string");
     return unusable;
   }
-  const auto& name = type->text();
+  const auto& name = json::text(*type);
   if (std::find(types.begin(), types.end(), name) == types.end()) {
     report.error("unknown-value", here, fmt::format("the light's type is {}", quote(name)),
                  fmt::format("it must be {}", listOf(types, "or")));

@@ -136,7 +136,7 @@ Texture readTexture(const Json& root, const Json& texture, const Path& path, Rep
   int sampler = -1;
   if (const Json* index = member(texture, "sampler"))
     report.index(Path(path, "sampler"), "sampler", *index, arraySize(root, "samplers"), "sampler", sampler);
-  if (sampler >= 0) readSampler(root["samplers"][static_cast<size_t>(sampler)], path, nullptr, out);
+  if (sampler >= 0) readSampler(json::at(root, "samplers")[static_cast<size_t>(sampler)], path, nullptr, out);
   const Path extensions(path, "extensions");
   for (const std::string_view name : kImageExtensions) {
     const Json* extension = extensionOf(texture, name);

@@ -164,9 +164,9 @@ Result<std::shared_ptr<const std::string>> TextureFile::bufferBytes(size_t index
   if (!uri->is_string()) return fail("image-missing", place, "the buffer's uri is no string");
   // Buffers may name one file, again and again, and images lie in one buffer.
   const auto [known, fresh] =
-      buffers_.try_emplace(isData(uri->text()) ? fmt::format("data:{}", index) : uri->text());
+      buffers_.try_emplace(isData(json::text(*uri)) ? fmt::format("data:{}", index) : json::text(*uri));
   if (!fresh && known->second != nullptr) return known->second;
-  Result<std::string> bytes = uriBytes(uri->text(), place);
+  Result<std::string> bytes = uriBytes(json::text(*uri), place);
   if (!bytes) return tl::make_unexpected(bytes.error());
   if (bytes->size() > access_.limits.file - held_) {
     return fail("image-missing", place,
@@ -252,7 +252,7 @@ std::vector<std::string> TextureFile::fileUris() const {
     for (const Json& object : *all) {
       const Json* uri = member(object, "uri");
       if (uri == nullptr || !uri->is_string()) continue;
-      if (!isData(uri->text()) && seen.insert(uri->text()).second) uris.push_back(uri->text());
+      if (!isData(json::text(*uri)) && seen.insert(json::text(*uri)).second) uris.push_back(json::text(*uri));
     }
   }
   return uris;

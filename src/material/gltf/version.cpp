@@ -19,7 +19,7 @@ bool isOfVersion(const Json& root, int minor) {
   const Json* asset = member(root, "asset");
   const Json* version = asset == nullptr ? nullptr : member(*asset, "version");
   if (version == nullptr || !version->is_string()) return false;
-  const std::optional<std::pair<int, int>> number = versionOf(version->text());
+  const std::optional<std::pair<int, int>> number = versionOf(json::text(*version));
   return number && number->first == 2 && number->second >= minor;
 }
 

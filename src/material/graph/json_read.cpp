@@ -277,9 +277,9 @@ std::optional<ir::Type> Reader::typeOf(const Json& json, const Path& path, std::
     report_.wrongType(here, "type", *name, "a string");
     return std::nullopt;
   }
-  const std::optional<ir::Type> type = find(name->text());
+  const std::optional<ir::Type> type = find(json::text(*name));
   if (!type) {
-    report_.error("unknown-type", here, fmt::format("no {} has the type {}", entry, quote(name->text())),
+    report_.error("unknown-type", here, fmt::format("no {} has the type {}", entry, quote(json::text(*name))),
                   std::string(help));
   }
   return type;
@@ -413,7 +413,7 @@ bool Reader::flag(const Json& json, const Path& path, std::string_view name) {
 std::string Reader::ui(const Json& json, const Path& path) {
   const Json* found = json::member(json, "ui");
   if (found == nullptr) return {};
-  std::string text = found->dump();
+  std::string text = json::dump(*found);
   if (ui_ <= limits_.ui && text.size() > limits_.ui - ui_) {
     report_.error("ui-too-large", Path(path, "ui"),
                   fmt::format("with this the graph's \"ui\" has more than {} bytes", limits_.ui),
@@ -441,14 +441,14 @@ void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
   const auto word = [&](const Json& value, const Path& at, std::string_view name, Keys words) -> size_t {
     const std::string expected = listOf(words, "or");
     if (!value.is_string()) return report_.wrongType(at, name, value, expected), 0;
-    const auto found = std::find(words.begin(), words.end(), value.text());
+    const auto found = std::find(words.begin(), words.end(), json::text(value));
     if (found != words.end()) return static_cast<size_t>(found - words.begin());
     std::string help = fmt::format("it is {}", expected);
-    if (value.text() == "periodic") help = "\"repeat\" is what MaterialX calls so";
-    if (value.text() == "constant" || value.text() == "black")
+    if (json::text(value) == "periodic") help = "\"repeat\" is what MaterialX calls so";
+    if (json::text(value) == "constant" || json::text(value) == "black")
       help += "; the node texture_within gives a colour outside of an image";
-    report_.error(fmt::format("unknown-{}", name), at, fmt::format("no {} is {}", name, quote(value.text())),
-                  std::move(help));
+    report_.error(fmt::format("unknown-{}", name), at,
+                  fmt::format("no {} is {}", name, quote(json::text(value))), std::move(help));
     return 0;
   };
   if (const Json* wrap = json::member(json, "wrap")) {

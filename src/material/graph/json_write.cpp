@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "graph/json_parts.h"
-#include "json/value.h"
+#include "json/json.h"
 
 namespace lacquer::graph {
 

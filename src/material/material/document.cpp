@@ -33,7 +33,7 @@ namespace {
 /// Checks one of the asset's two versions. `newest` is the newest minor version that can be read.
 void checkVersion(const Json& version, std::string_view name, int newest, const Path& path, Report& report) {
   if (!version.is_string()) return report.wrongType(path, name, version, "a string such as \"2.0\"");
-  const auto& text = version.text();
+  const auto& text = json::text(version);
   const std::optional<std::pair<int, int>> number = gltf::versionOf(text);
   if (number && number->first == 2 && number->second <= newest) return;
   report.error("unsupported-version", path, fmt::format("{} is {}", name, quote(text)),
@@ -75,7 +75,7 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   const Json* required = json::member(root, "extensionsRequired");
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
     if (!(*required)[i].is_string()) continue;
-    const auto& name = (*required)[i].text();
+    const auto& name = json::text((*required)[i]);
     if (schema.find(name) || !besideMaterials(name).empty()) continue;
     // What nobody here knows may change materials, whatever its name is.
     const bool of_materials = name.find("_materials_") != std::string::npos;
@@ -241,9 +241,9 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   checkExtensions(*root, schema, of_scene);
   if (const Json* materials = json::member(*root, "materials")) {
     const std::map<size_t, AnimatedOf> animated =
-        animatedMaterials(document, materials->size(), document.diagnostics);
+        animatedMaterials(document, json::arraySize(*root, "materials"), document.diagnostics);
     document.materials.reserve(materials->size());
-    for (size_t i = 0; i < materials->size(); ++i) {
+    for (size_t i = 0; i < json::arraySize(*root, "materials"); ++i) {
       document.materials.push_back(readMaterial((*materials)[i], i, schema, facts));
       document.materials.back().patterns = procedurals.patterns;
       if (const auto it = animated.find(i); it != animated.end())

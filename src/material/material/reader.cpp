@@ -125,7 +125,7 @@ bool MaterialReader::structure(std::string_view name, const Json& json, const Pa
     extensions(json, path, here);
   } else if (here.named && name == "name") {
     if (json.is_string())
-      material_.name = json.text();
+      material_.name = json::text(json);
     else
       report_.wrongType(path, name, json, "a string");
   } else if (here.texture && name == "index") {
@@ -180,7 +180,7 @@ void MaterialReader::number(const PropertyDecl& decl, std::string_view name, con
 bool MaterialReader::choice(const PropertyDecl& decl, const Json& json, const Path& path,
                             ir::Components& out) {
   if (!json.is_string()) return report_.wrongType(path, decl.name, json, "a string"), false;
-  const auto& name = json.text();
+  const auto& name = json::text(json);
   const auto found = std::find(decl.choices.begin(), decl.choices.end(), name);
   if (found != decl.choices.end()) {
     out[0] = static_cast<double>(found - decl.choices.begin());
@@ -322,8 +322,9 @@ void MaterialReader::procedural(const Json& json, const Path& path) {
   const bool whole = number->is_number_unsigned();
   if (!whole || number->get<uint64_t>() >= list.size())
     return fallback(Path(path, "index"),
-                    number->is_number() ? fmt::format("there is no procedural {}", printable(number->dump()))
-                                        : fmt::format("index is {}", json::describe(*number)),
+                    number->is_number()
+                        ? fmt::format("there is no procedural {}", printable(json::dump(*number)))
+                        : fmt::format("index is {}", json::describe(*number)),
                     fmt::format("the file has {}", countOf(list.size(), "procedural")));
   const auto index = static_cast<size_t>(number->get<uint64_t>());
   const materialx::Procedural& one = list[index];
@@ -332,7 +333,7 @@ void MaterialReader::procedural(const Json& json, const Path& path) {
   std::vector<std::string_view> names;
   for (const auto& [name, group] : one.outputs) names.push_back(name);
   const Json* named = member(json, "output");
-  std::string wanted = named != nullptr && named->is_string() ? named->text() : std::string();
+  std::string wanted = named != nullptr && named->is_string() ? json::text(*named) : std::string();
   // Its number, too: its place among the outputs.
   if (named != nullptr && named->is_number_unsigned() && named->get<uint64_t>() < names.size())
     wanted = names[named->get<uint64_t>()];
@@ -343,7 +344,8 @@ void MaterialReader::procedural(const Json& json, const Path& path) {
   const bool some = named == nullptr || !wanted.empty();
   const std::string_view output = some ? one.output(wanted) : std::string_view();
   if (output.empty()) {
-    const std::string of = named == nullptr || named->is_string() ? quote(wanted) : printable(named->dump());
+    const std::string of =
+        named == nullptr || named->is_string() ? quote(wanted) : printable(json::dump(*named));
     return fallback(path, fmt::format("the procedural {} has no output {}", index, of), has);
   }
   texture_->group = one.group;

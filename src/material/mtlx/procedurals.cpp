@@ -60,14 +60,14 @@ private:
 
 /// A value as MaterialX writes it: "1,0.5", "true", a text.
 std::string ProceduralReader::textOf(const Json& json) {
-  if (json.is_string()) return json.text();
+  if (json.is_string()) return json::text(json);
   if (json.is_boolean()) return json.get<bool>() ? "true" : "false";
-  if (json.is_number()) return json.dump();
+  if (json.is_number()) return json::dump(json);
   std::string text;
-  for (const Json& one : json) {
+  for (const Json& one : json::elements(json)) {
     if (!text.empty()) text += ",";
     if (one.is_array()) {
-      for (const Json& inner : one) text += (&inner == one.begin() ? "" : ",") + textOf(inner);
+      for (const Json& inner : json::elements(one)) text += (&inner == &one[0] ? "" : ",") + textOf(inner);
     } else {
       text += textOf(one);
     }
@@ -93,7 +93,7 @@ bool ProceduralReader::ports(const Json& owner, std::string_view key, const Path
     const Json& one = (*list)[i];
     const Json* name = json::member(one, "name");
     const std::string given =
-        name != nullptr && name->is_string() ? name->text() : fmt::format("{}{}", key, i);
+        name != nullptr && name->is_string() ? json::text(*name) : fmt::format("{}{}", key, i);
     if (!each(one, given, Path(at, i))) return false;
   }
   return true;
@@ -105,14 +105,14 @@ bool ProceduralReader::reference(const Json& json, const Path& path, std::string
   const Json* found = json::member(json, key);
   if (found == nullptr) return true;
   if (found->is_string()) {
-    to.set(attribute, found->text());
+    to.set(attribute, json::text(*found));
     return true;
   }
   const bool whole =
       found->is_number_unsigned() || (found->is_number_integer() && found->get<int64_t>() >= 0);
   if (!whole || found->get<uint64_t>() >= names.size())
     return fails(Path(path, key), "wrong-reference",
-                 fmt::format("there is no {} {}", key, printable(found->dump())),
+                 fmt::format("there is no {} {}", key, printable(json::dump(*found))),
                  fmt::format("there are {}", names.size()));
   to.set(attribute, names[found->get<uint64_t>()]);
   return true;
@@ -129,14 +129,14 @@ bool ProceduralReader::port(const Json& json, std::string_view name, const Path&
   port.set("name", std::string(name));
   const Json* type = json::member(json, "type");
   if (type != nullptr && type->is_string()) {
-    std::string text = type->text();
+    std::string text = json::text(*type);
     if (text == "matrix3x3") text = "matrix33";
     if (text == "matrix4x4") text = "matrix44";
     port.set("type", text);
   }
   for (const std::string_view key : {"colorspace", "unit", "unittype"}) {
     const Json* text = json::member(json, key);
-    if (text != nullptr && text->is_string() && text->text() != "none") port.set(key, text->text());
+    if (text != nullptr && text->is_string() && json::text(*text) != "none") port.set(key, json::text(*text));
   }
   if (const Json* value = json::member(json, "value")) {
     if (value->is_object() || value->is_null())
@@ -150,9 +150,9 @@ bool ProceduralReader::port(const Json& json, std::string_view name, const Path&
                    fmt::format("texture is {}", json::describe(*texture)), "it is the number of a texture");
     if (!texture->is_number_unsigned() || texture->get<uint64_t>() >= textures_)
       return fails(Path(path, "texture"), "wrong-reference",
-                   fmt::format("there is no texture {}", printable(texture->dump())),
+                   fmt::format("there is no texture {}", printable(json::dump(*texture))),
                    fmt::format("the file has {}", textures_));
-    port.set("texture", texture->dump());
+    port.set("texture", json::dump(*texture));
   }
   if (!reference(json, path, "node", "nodename", nodes_, port)) return false;
   if (!reference(json, path, "input", "interfacename", inputs_, port)) return false;
@@ -163,7 +163,7 @@ bool ProceduralReader::port(const Json& json, std::string_view name, const Path&
 bool ProceduralReader::output(const Json& json, const Path& path, Element& port) {
   const Json* named = json::member(json, "output");
   if (named == nullptr) return true;
-  if (named->is_string()) return port.set("output", named->text()), true;
+  if (named->is_string()) return port.set("output", json::text(*named)), true;
   if (!named->is_number())
     return fails(Path(path, "output"), "wrong-type", fmt::format("output is {}", json::describe(*named)),
                  "it is the name of an output, or its number");
@@ -171,13 +171,13 @@ bool ProceduralReader::output(const Json& json, const Path& path, Element& port)
   const auto place = static_cast<size_t>(node - nodes_.begin());
   if (node == nodes_.end() || outputs_[place].empty()) {
     // Of one that lists none its definition has the order.
-    port.set("outputnumber", named->dump());
+    port.set("outputnumber", json::dump(*named));
     return true;
   }
   const std::vector<std::string>& all = outputs_[place];
   if (!named->is_number_unsigned() || named->get<uint64_t>() >= all.size())
     return fails(Path(path, "output"), "wrong-reference",
-                 fmt::format("the node {} has no output {}", quote(*node), printable(named->dump())),
+                 fmt::format("the node {} has no output {}", quote(*node), printable(json::dump(*named))),
                  fmt::format("it lists {}", all.size()));
   port.set("output", all[named->get<uint64_t>()]);
   return true;
@@ -189,12 +189,12 @@ bool ProceduralReader::node(const Json& json, const Path& path, const std::strin
   if (type == nullptr || !type->is_string())
     return fails(path, "missing-property", "the node has no \"nodetype\"", "it names a node of MaterialX");
   Element& node = into.children.emplace_back();
-  node.category = type->text();
+  node.category = json::text(*type);
   node.place = placeOf(path);
   node.set("name", name);
   for (const std::string_view key : {"type", "version"}) {
     const Json* text = json::member(json, key);
-    if (text != nullptr && text->is_string()) node.set(key, text->text());
+    if (text != nullptr && text->is_string()) node.set(key, json::text(*text));
   }
   return ports(json, "inputs", path, [&](const Json& one, const std::string& port_name, const Path& at) {
     return port(one, port_name, at, "input", node);
@@ -216,7 +216,7 @@ bool ProceduralReader::body(const Json& json, const Path& path, Element& graph) 
   outputs_.assign(count, {});
   for (size_t i = 0; i < count; ++i) {
     const Json* name = json::member((*nodes)[i], "name");
-    std::string own = name != nullptr && name->is_string() ? name->text() : std::string();
+    std::string own = name != nullptr && name->is_string() ? json::text(*name) : std::string();
     if (own.empty() || !names.insert(own).second) own += fmt::format("_{}", i);
     nodes_.push_back(std::move(own));
     const Json* outputs = json::member((*nodes)[i], "outputs");
@@ -248,7 +248,7 @@ Element ProceduralReader::graph(const Json& json, const Path& path) {
   }
   for (const std::string_view key : {"name", "type"}) {
     const Json* text = json::member(json, key);
-    if (text != nullptr && text->is_string()) graph.set(key, text->text());
+    if (text != nullptr && text->is_string()) graph.set(key, json::text(*text));
   }
   bool good = ports(json, "inputs", path, [&](const Json&, const std::string& name, const Path&) {
     inputs_.push_back(name);
@@ -274,9 +274,9 @@ Element ProceduralReader::definition(const Json& json, const Path& path, const s
     fails(path, "missing-property", "the definition has no \"node\"", "it is the nodetype of its instances");
     return {};
   }
-  made.set("node", node->text());
+  made.set("node", json::text(*node));
   const Json* version = json::member(json, "version");
-  if (version != nullptr && version->is_string()) made.set("version", version->text());
+  if (version != nullptr && version->is_string()) made.set("version", json::text(*version));
   const Json* by_default = json::member(json, "defaultVersion");
   if (by_default != nullptr && *by_default == Json(true)) made.set("isdefaultversion", "true");
   nodes_.clear();
@@ -288,7 +288,7 @@ Element ProceduralReader::definition(const Json& json, const Path& path, const s
                            if (!port(one, port_name, at, category, made)) return false;
                            const Json* given = json::member(one, "defaultgeomprop");
                            if (given != nullptr && given->is_string())
-                             made.children.back().set("defaultgeomprop", given->text());
+                             made.children.back().set("defaultgeomprop", json::text(*given));
                            return true;
                          });
   }
@@ -305,7 +305,7 @@ std::vector<Element> ProceduralReader::definitions(const Json& list, const Path&
   for (size_t i = 0; i < list.size(); ++i) {
     const Path at(path, i);
     const Json* name = json::member(list[i], "name");
-    std::string own = name != nullptr && name->is_string() ? name->text() : std::string();
+    std::string own = name != nullptr && name->is_string() ? json::text(*name) : std::string();
     if (own.empty() || !names.insert(own).second) own += fmt::format("_{}", i);
     const Json* type = json::member(list[i], "nodetype");
     if (!isGraph(i) && (type == nullptr || *type != Json("nodedef"))) {
@@ -320,14 +320,14 @@ std::vector<Element> ProceduralReader::definitions(const Json& list, const Path&
     const Path at(path, i);
     const Json* of = json::member(list[i], "nodedef");
     const auto named = std::find_if(made.begin(), made.end(), [&](const Element& e) {
-      return of != nullptr && of->is_string() && e.category == "nodedef" && e.name() == of->text();
+      return of != nullptr && of->is_string() && e.category == "nodedef" && e.name() == json::text(*of);
     });
     size_t place = static_cast<size_t>(named - made.begin());
     if (of != nullptr && of->is_number_unsigned())
       place = std::min<uint64_t>(of->get<uint64_t>(), made.size());
     Element graph = std::exchange(made[i], {});
     if (place == made.size() || isGraph(place)) {
-      const std::string said = of == nullptr ? "no \"nodedef\"" : "the nodedef " + printable(of->dump());
+      const std::string said = of == nullptr ? "no \"nodedef\"" : "the nodedef " + printable(json::dump(*of));
       fails(at, "wrong-reference", fmt::format("the nodegraph has {}", said),
             "it is the number of a definition of this array");
       continue;

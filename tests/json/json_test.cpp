@@ -1,0 +1,134 @@
+// What readers and writers of JSON ask beside the library: its own reader, and values whatever their kind.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "json/json.h"
+#include "json/report.h"
+
+namespace lacquer::json {
+namespace {
+
+/// Text of a random value; `depth` bounds what lies within.
+std::string randomText(std::mt19937_64& random, int depth) {
+  static const char* const kScalars[] = {"null",
+                                         "true",
+                                         "false",
+                                         "0",
+                                         "-1",
+                                         "18446744073709551615",
+                                         "-9223372036854775808",
+                                         "1.5",
+                                         "-0.0",
+                                         "1e-7",
+                                         "1e300",
+                                         "123456789012345678901234567890",
+                                         "0.1",
+                                         "\"\"",
+                                         "\"text\"",
+                                         "\"\\u0001\\\"\\\\\\n\"",
+                                         "\"é€\""};
+  const auto below = [&](size_t n) { return static_cast<size_t>(random() % n); };
+  const size_t kind = depth == 0 ? 2 : below(3);
+  if (kind == 2) return kScalars[below(std::size(kScalars))];
+  std::string text(1, kind == 0 ? '[' : '{');
+  const size_t count = below(4);
+  for (size_t i = 0; i < count; ++i) {
+    if (i > 0) text += ',';
+    if (kind == 1) text += fmt::format("\"key {} {}\": ", below(100), i);
+    text += randomText(random, depth - 1);
+  }
+  return text + (kind == 0 ? ']' : '}');
+}
+
+TEST(Value, isReadAsTheLibraryReadsIt) {
+  std::mt19937_64 random(7);
+  for (int round = 0; round < 3000; ++round) {
+    const std::string text = randomText(random, 5);
+    const Result<Json> json = parse(text, "random");
+    ASSERT_TRUE(json) << text;
+    ASSERT_EQ(*json, Json::parse(text)) << text;
+    ASSERT_EQ(reread(dump(*json)), *json) << text;
+    ASSERT_EQ(reread(dump(*json, 2)), *json) << text;
+  }
+}
+
+/// The library's own reader takes the last one, too, in the place of the first.
+TEST(Value, theLastOfOneNameCountsInItsPlace) {
+  const std::string text = R"({"a": 1, "b": {"c": [0, {"x": 1, "x": 2}]}, "a": 3})";
+  const Result<Json> json = parse(text, "a.json");
+  ASSERT_TRUE(json);
+  EXPECT_EQ(dump(*json), R"({"b":{"c":[0,{"x":2}]},"a":3})");
+  const Result<Json> refused = parse(text, "a.json", {}, Doubles::Refused);
+  ASSERT_FALSE(refused);
+  ASSERT_EQ(refused.error().size(), 2U);
+  EXPECT_EQ(refused.error()[0].place.pointer, "/b/c/1/x");
+  EXPECT_EQ(refused.error()[1].place.pointer, "/a");
+}
+
+TEST(Value, bytesThatAreNoTextAreReplaced) {
+  EXPECT_EQ(dump("a\xff"
+                 "b"),
+            "\"a\xef\xbf\xbd"
+            "b\"");
+  EXPECT_EQ(dump(std::numeric_limits<double>::infinity()), "null");
+  EXPECT_EQ(quotedText("a\"\xff"), "\"a\\\"\xef\xbf\xbd\"");
+}
+
+/// Whatever a file has where a reader looks, and wherever the reader looks in it.
+TEST(Value, membersAndElementsOfAnyKind) {
+  for (const char* text :
+       {"null", "true", "1", "-1", "1.5", "\"a\"", "[]", "[1, 2]", "{}", R"({"a": null})"}) {
+    const Json json = *parse(text, "a.json");
+    EXPECT_EQ(member(json, "b"), nullptr) << text;
+    EXPECT_TRUE(at(json, "a").is_null()) << text;
+    EXPECT_EQ(elements(json).size(), json.is_array() ? json.size() : 0U) << text;
+    EXPECT_EQ(arraySize(json, "a"), 0U) << text;
+    EXPECT_FALSE(describe(json).empty()) << text;
+  }
+  const Json json = *parse(R"({"a": [1, "x"]})", "a.json");
+  EXPECT_EQ(text(elements(at(json, "a"))[1]), "x");
+  EXPECT_THROW((void)lacquer::json::text(json), nlohmann::json::type_error);
+  EXPECT_THROW((void)reread("[1,"), std::logic_error);
+}
+
+/// Members are put in their places at once: the time is in proportion to their number.
+TEST(Value, largeObjectsKeepTheirOrder) {
+  constexpr size_t kMany = 200'000;
+  std::string text = "{";
+  for (size_t i = 0; i < kMany; ++i)
+    text += fmt::format(R"({}"m{}": {})", i == 0 ? "" : ", ", i * 7919 % kMany, i);
+  const Json json = *parse(text + R"(, "m3": "twice"})", "a.json");
+  ASSERT_EQ(json.size(), kMany);
+  size_t place = 0;
+  for (const auto& [name, value] : json.items()) {
+    while (place * 7919 % kMany == 3) ++place;
+    if (name == "m3") continue;
+    ASSERT_EQ(name, fmt::format("m{}", place * 7919 % kMany));
+    ASSERT_EQ(value, place++);
+  }
+  EXPECT_EQ(at(json, "m3"), "twice");
+}
+
+/// However long what it names, and however much is wrong.
+TEST(JsonReport, isBounded) {
+  const std::string file = "a.json";
+  Diagnostics said;
+  Report report(file, said);
+  const Path root;
+  const std::string name(100'000, '\xC3');
+  const Path path(root, name);
+  for (size_t i = 0; i < 3 * kMostDiagnostics; ++i) report.warning("odd", Path(path, i), "it is odd");
+  ASSERT_EQ(said.size(), kMostDiagnostics + 1);
+  EXPECT_EQ(said.back().code, "more-diagnostics");
+  EXPECT_FALSE(hasError(said));
+  EXPECT_LT(said[0].place.pointer.size(), 1100U);
+  report.error("wrong", path, "it is wrong");
+  EXPECT_EQ(said.size(), kMostDiagnostics + 1);
+  EXPECT_TRUE(hasError(said));
+}
+
+}  // namespace
+}  // namespace lacquer::json
