@@ -146,7 +146,8 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
 
 void addTargetFlags(CLI::App& verb, OptionFlags& flags) {
   verb.add_option("--target", flags.targets,
-                  fmt::format("of {}; the first five when absent", fmt::join(targetNames(), ", ")))
+                  fmt::format("of {}, with commas between or repeated; the first five when absent",
+                              fmt::join(targetNames(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
