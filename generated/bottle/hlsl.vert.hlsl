@@ -1,6 +1,17 @@
 // forward-volume-3cbc4b942deea0550645914bd878b26a
 // Lacquer 0.2.0, template forward
 
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -9,7 +20,7 @@ struct FrameBlock {
     int light_count;
 };
 
-cbuffer Frame : register(b0) {
+cbuffer Frame : LACQUER_AT(b0, b0, space0) {
     FrameBlock frame;
 };
 
@@ -18,7 +29,7 @@ struct ObjectBlock {
     column_major float4x4 normal_matrix;
 };
 
-cbuffer Object : register(b3) {
+cbuffer Object : LACQUER_AT(b3, b0, space2) {
     ObjectBlock object;
 };
 
@@ -53,7 +64,7 @@ struct MaterialBlock {
     float metal_first;
 };
 
-cbuffer Material : register(b2) {
+cbuffer Material : LACQUER_AT(b2, b0, space1) {
     MaterialBlock material;
 };
 

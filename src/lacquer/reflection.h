@@ -14,9 +14,9 @@
 
 namespace lacquer {
 
-/// Where the contract has a block or a texture. Vulkan (glsl, spirv) has it at `set` and `binding`; OpenGL
-/// and HLSL at `flat` of its kind: a block's binding point and bN, a texture's unit, tN and sN. ESSL finds it
-/// by name.
+/// Where the contract has a block or a texture. Vulkan (glsl, spirv) has it at `set` and `binding`, and so
+/// has HLSL for Shader Model 6, in the space of the set; OpenGL and HLSL for Shader Model 5.0 at `flat` of
+/// its kind: a block's binding point and bN, a texture's unit, tN and sN. ESSL finds it by name.
 struct BindingPoint {
   uint32_t set = 0, binding = 0, flat = 0;
 };

@@ -21,6 +21,27 @@ namespace {
 /// The function that says how large a texture is.
 constexpr std::string_view kSize = "lacquer_size";
 
+/// One text has both. Shader Model 5.0 has no spaces; fxc does not say which model it compiles for, so that
+/// who compiles for 5.1 says it.
+constexpr std::string_view kPlaces[] = {
+    "// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for "
+    "5.1.",
+    "// Shader Model 5.0 has one row of registers for all sets.",
+    "#ifndef LACQUER_SPACES",
+    "#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)",
+    "#endif",
+    "#if LACQUER_SPACES",
+    "#define LACQUER_AT(row, place, space) register(place, space)",
+    "#else",
+    "#define LACQUER_AT(row, place, space) register(row)",
+    "#endif",
+};
+
+/// Where it is, of the registers that `kind` names.
+std::string placeOf(char kind, const ir::Binding& at) {
+  return fmt::format("LACQUER_AT({0}{1}, {0}{2}, space{3})", kind, at.flat, at.binding, at.set);
+}
+
 /// glTF numbers its semantics as TEXCOORD_0, HLSL as TEXCOORD0.
 std::string semantic(const ir::Attribute& attribute) {
   std::string name = attribute.name.substr(attribute.name.starts_with('_') ? 1 : 0);
@@ -119,6 +140,10 @@ public:
       if (!first) text.blank();
       first = false;
     };
+    if (!program.blocks.empty() || !program.textures.empty()) {
+      blank();
+      for (const std::string_view line : kPlaces) text.line(line);
+    }
     for (uint32_t index : program.blocks) {
       blank();
       block(text, module.blocks[index]);
@@ -159,11 +184,11 @@ private:
     text.line("};");
     text.blank();
     if (block.list) {
-      text.line(fmt::format("StructuredBuffer<{}> {}s : register(t{});", structure, block.instance,
-                            block.binding.flat));
+      text.line(fmt::format("StructuredBuffer<{}> {}s : {};", structure, block.instance,
+                            placeOf('t', block.binding)));
       return;
     }
-    text.line(fmt::format("cbuffer {} : register(b{}) {{", blockName(block), block.binding.flat));
+    text.line(fmt::format("cbuffer {} : {} {{", blockName(block), placeOf('b', block.binding)));
     text.indent();
     text.line(array ? fmt::format("{} {}s[{}];", structure, block.instance, block.array)
                     : fmt::format("{} {};", structure, block.instance));
@@ -172,11 +197,10 @@ private:
   }
 
   void texture(Text& text, const ir::TextureSlot& slot) const {
-    const uint32_t number = slot.binding.flat;
     const bool compares = slot.type == Type::Texture2DShadow;
-    text.line(fmt::format("{} {} : register(t{});", type(slot.type), slot.name, number));
-    text.line(fmt::format("{} {} : register(s{});", compares ? "SamplerComparisonState" : "SamplerState",
-                          samplerName(slot), number));
+    text.line(fmt::format("{} {} : {};", type(slot.type), slot.name, placeOf('t', slot.binding)));
+    text.line(fmt::format("{} {} : {};", compares ? "SamplerComparisonState" : "SamplerState",
+                          samplerName(slot), placeOf('s', slot.binding)));
   }
 
   std::vector<std::string> parameters(const ir::Module& module, const schedule::Program& program) const {

@@ -1,5 +1,16 @@
 // Printed by the tests.
 
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
 struct Light {
     float3 direction;
     float range;
@@ -7,7 +18,7 @@ struct Light {
     int type;
 };
 
-cbuffer Lights : register(b1) {
+cbuffer Lights : LACQUER_AT(b1, b1, space0) {
     Light lights[16];
 };
 

@@ -1,5 +1,16 @@
 // Printed by the tests.
 
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -7,7 +18,7 @@ struct FrameBlock {
     float exposure;
 };
 
-cbuffer Frame : register(b0) {
+cbuffer Frame : LACQUER_AT(b0, b0, space0) {
     FrameBlock frame;
 };
 
@@ -15,7 +26,7 @@ struct ObjectBlock {
     column_major float4x4 model;
 };
 
-cbuffer Object : register(b3) {
+cbuffer Object : LACQUER_AT(b3, b0, space2) {
     ObjectBlock object;
 };
 

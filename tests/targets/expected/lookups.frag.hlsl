@@ -1,15 +1,26 @@
 // Printed by the tests.
 
-Texture2D map : register(t3);
-SamplerState map_sampler : register(s3);
-TextureCube around : register(t0);
-SamplerState around_sampler : register(s0);
-Texture2D depths : register(t1);
-SamplerComparisonState depths_sampler : register(s1);
-Texture2DArray tiles : register(t2);
-SamplerState tiles_sampler : register(s2);
-Texture3D volume : register(t3);
-SamplerState volume_sampler : register(s3);
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
+Texture2D map : LACQUER_AT(t3, t1, space1);
+SamplerState map_sampler : LACQUER_AT(s3, s1, space1);
+TextureCube around : LACQUER_AT(t0, t2, space0);
+SamplerState around_sampler : LACQUER_AT(s0, s2, space0);
+Texture2D depths : LACQUER_AT(t1, t3, space0);
+SamplerComparisonState depths_sampler : LACQUER_AT(s1, s3, space0);
+Texture2DArray tiles : LACQUER_AT(t2, t4, space0);
+SamplerState tiles_sampler : LACQUER_AT(s2, s4, space0);
+Texture3D volume : LACQUER_AT(t3, t5, space0);
+SamplerState volume_sampler : LACQUER_AT(s3, s5, space0);
 
 int2 lacquer_size(Texture2D map, int level) {
     uint width, height, levels;
