@@ -12,6 +12,27 @@
 #define LACQUER_AT(row, place, space) register(row)
 #endif
 
+#define LACQUER_ROOT_SIGNATURE \
+    "RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT), " \
+    "RootConstants(num32BitConstants=1, b0, space=3), " \
+    "CBV(b0, space=2), " \
+    "CBV(b1, space=2), " \
+    "CBV(b2, space=2), " \
+    "CBV(b3, space=2), " \
+    "DescriptorTable(SRV(t0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=1), " \
+    "DescriptorTable(SRV(t0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=0), " \
+    "CBV(b1, space=0), " \
+    "CBV(b7, space=0), " \
+    "CBV(b9, space=0), " \
+    "CBV(b10, space=0), " \
+    "CBV(b11, space=0), " \
+    "DescriptorTable(SRV(t0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE))"
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -71,15 +92,25 @@ cbuffer Material : LACQUER_AT(b2, b0, space1) {
 };
 
 TextureCube environment_specular : LACQUER_AT(t0, t2, space0);
+#ifndef environment_specular_sampler
 SamplerState environment_specular_sampler : LACQUER_AT(s0, s2, space0);
+#endif
 TextureCube environment_irradiance : LACQUER_AT(t1, t3, space0);
+#ifndef environment_irradiance_sampler
 SamplerState environment_irradiance_sampler : LACQUER_AT(s1, s3, space0);
+#endif
 Texture2D environment_dfg : LACQUER_AT(t2, t4, space0);
+#ifndef environment_dfg_sampler
 SamplerState environment_dfg_sampler : LACQUER_AT(s2, s4, space0);
+#endif
 Texture2D environment_sheen : LACQUER_AT(t4, t5, space0);
+#ifndef environment_sheen_sampler
 SamplerState environment_sheen_sampler : LACQUER_AT(s4, s5, space0);
+#endif
 Texture2D sheen_color_texture : LACQUER_AT(t3, t1, space1);
+#ifndef sheen_color_texture_sampler
 SamplerState sheen_color_texture_sampler : LACQUER_AT(s3, s1, space1);
+#endif
 
 void main(
     float3 v_position : TEXCOORD0,

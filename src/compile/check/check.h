@@ -68,7 +68,8 @@ bool haveDxc();
 /// and when it was modified. Empty where there is none.
 std::string dxcIdentity();
 
-/// Compiles HLSL with dxc (profile vs_6_0 / ps_6_0). An empty list when it compiles; without dxc one error,
+/// Compiles HLSL with dxc (profile vs_6_0 / ps_6_0), with the root signature LACQUER_ROOT_SIGNATURE where the
+/// text defines it. An empty list when it compiles; without dxc one error,
 /// "dxc-missing". Code "dxc". Safe to call from several threads, as long as none changes the environment.
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name);
 

@@ -11,6 +11,20 @@
 #define LACQUER_AT(row, place, space) register(row)
 #endif
 
+#define LACQUER_ROOT_SIGNATURE \
+    "RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT), " \
+    "RootConstants(num32BitConstants=1, b0, space=3), " \
+    "CBV(b0, space=2), " \
+    "DescriptorTable(SRV(t0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=1), " \
+    "DescriptorTable(SRV(t0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=0), " \
+    "CBV(b1, space=0), " \
+    "DescriptorTable(SRV(t0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE))"
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -44,9 +58,13 @@ cbuffer Material : LACQUER_AT(b2, b0, space1) {
 };
 
 Texture2D base_color_texture : LACQUER_AT(t3, t1, space1);
+#ifndef base_color_texture_sampler
 SamplerState base_color_texture_sampler : LACQUER_AT(s3, s1, space1);
+#endif
 TextureCube environment_texture : LACQUER_AT(t0, t2, space0);
+#ifndef environment_texture_sampler
 SamplerState environment_texture_sampler : LACQUER_AT(s0, s2, space0);
+#endif
 
 void main(
     float3 v_position : TEXCOORD0,
