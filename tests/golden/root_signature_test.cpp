@@ -159,6 +159,30 @@ TEST_P(RootSignature, ObjectsAreElementsOfTheSameBytes) {
   EXPECT_EQ(found > 0, std::string(GetParam()) != "bsdf");
 }
 
+/// HLSL packs the elements of a buffer tighter than constant buffers: a block of two floats has 16 bytes.
+TEST(Objects, HaveTheBytesOfTheirBlocks) {
+  const Folder folder;
+  writeText(folder.path() / "skinned.gltf", R"({"asset": {"version": "2.0"}, "materials": [{}],
+    "meshes": [{"primitives": [{"material": 0,
+      "attributes": {"POSITION": 0, "NORMAL": 1, "JOINTS_0": 2, "WEIGHTS_0": 3}}]}],
+    "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+      {"componentType": 5126, "count": 3, "type": "VEC3"}, {"componentType": 5123, "count": 3, "type": "VEC4"},
+      {"componentType": 5126, "count": 3, "type": "VEC4"}]})");
+  Options options;
+  options.targets = {Target::Hlsl};
+  Messages messages;
+  const Scene scene = Scene::load(folder / "skinned.gltf", options, messages);
+  ASSERT_TRUE(scene) << textOf(messages);
+  Graph graph = scene.graph(0, scene.uses(0).at(0), options, messages);
+  ASSERT_TRUE(graph) << textOf(messages);
+  const Shader shader = graph.generate(options, messages);
+  ASSERT_TRUE(shader) << textOf(messages);
+  const auto words = check::compile("#define LACQUER_OBJECTS 1\n" + shader.vertexText(Target::Hlsl),
+                                    Target::Hlsl, check::Stage::Vertex, "skinned.hlsl");
+  ASSERT_TRUE(words) << format(words.error()[0]);
+  EXPECT_EQ(stridesOf(*words), (std::set<uint32_t>{16, 128}));
+}
+
 /// The material's textures share the sampler of the first.
 TEST(SharedSamplers, AreOneByDefines) {
   Options options;
