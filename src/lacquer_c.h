@@ -467,7 +467,7 @@ LACQUER_C const char* lacquer_shader_interface(const lacquer_shader* shader, siz
  * nothing filled, for an index that does not exist. */
 typedef struct lacquer_binding {
   uint32_t set, binding; /* of Vulkan */
-  uint32_t flat;         /* OpenGL's binding point or texture unit, HLSL's register */
+  uint32_t flat;         /* OpenGL's binding point or texture unit, the register of Shader Model 5.0 */
   uint32_t wgsl_group, wgsl_binding, wgsl_sampler;
   uint32_t msl_index, msl_sampler; /* plain bindings */
   uint32_t msl_argument_buffer, msl_argument_index, msl_argument_sampler;

@@ -1,6 +1,45 @@
 // forward-coat-12c10870bbeaa4391d526f62685f5162
 // Lacquer 0.2.0, template forward
 
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
+#define LACQUER_ROOT_SIGNATURE \
+    "RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT), " \
+    "RootConstants(num32BitConstants=1, b0, space=3), " \
+    "CBV(b0, space=2), " \
+    "CBV(b1, space=2), " \
+    "CBV(b2, space=2), " \
+    "CBV(b3, space=2), " \
+    "DescriptorTable(SRV(t0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=1), " \
+    "DescriptorTable(SRV(t0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=0), " \
+    "CBV(b1, space=0), " \
+    "CBV(b7, space=0), " \
+    "CBV(b9, space=0), " \
+    "CBV(b10, space=0), " \
+    "CBV(b11, space=0), " \
+    "DescriptorTable(SRV(t0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE))"
+
+// With -D LACQUER_OBJECTS the blocks of all objects are elements of buffers.
+#ifdef LACQUER_OBJECTS
+cbuffer LacquerDraw : register(b0, space3) {
+    uint lacquer_object;
+};
+#endif
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -9,7 +48,7 @@ struct FrameBlock {
     int light_count;
 };
 
-cbuffer Frame : register(b0) {
+cbuffer Frame : LACQUER_AT(b0, b0, space0) {
     FrameBlock frame;
 };
 
@@ -18,9 +57,13 @@ struct ObjectBlock {
     column_major float4x4 normal_matrix;
 };
 
-cbuffer Object : register(b3) {
+#ifdef LACQUER_OBJECTS
+StructuredBuffer<ObjectBlock> lacquer_object_list : register(t0, space2);
+#else
+cbuffer Object : LACQUER_AT(b3, b0, space2) {
     ObjectBlock object;
 };
+#endif
 
 void main(
     float3 in_position : POSITION,
@@ -30,6 +73,9 @@ void main(
     out float3 v_normal : TEXCOORD1,
     out float2 v_uv0 : TEXCOORD2,
     out precise float4 out_position : SV_Position) {
+#ifdef LACQUER_OBJECTS
+    ObjectBlock object = lacquer_object_list[lacquer_object];
+#endif
     // world
     float4 world = mul(object.model, float4(in_position, 1.0));
 

@@ -1,6 +1,38 @@
 // forward-base-f217b135f6c9b4210455f224951dcd52
 // Lacquer 0.2.0, template forward
 
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
+#define LACQUER_ROOT_SIGNATURE \
+    "RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT), " \
+    "RootConstants(num32BitConstants=1, b0, space=3), " \
+    "CBV(b0, space=2), " \
+    "CBV(b1, space=2), " \
+    "CBV(b2, space=2), " \
+    "CBV(b3, space=2), " \
+    "DescriptorTable(SRV(t0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=1), " \
+    "DescriptorTable(SRV(t0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=0), " \
+    "CBV(b1, space=0), " \
+    "CBV(b7, space=0), " \
+    "CBV(b9, space=0), " \
+    "CBV(b10, space=0), " \
+    "CBV(b11, space=0), " \
+    "DescriptorTable(SRV(t0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE))"
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -9,7 +41,7 @@ struct FrameBlock {
     int light_count;
 };
 
-cbuffer Frame : register(b0) {
+cbuffer Frame : LACQUER_AT(b0, b0, space0) {
     FrameBlock frame;
 };
 
@@ -23,7 +55,7 @@ struct Light {
     float spot_offset;
 };
 
-cbuffer Lights : register(b1) {
+cbuffer Lights : LACQUER_AT(b1, b1, space0) {
     Light lights[16];
 };
 
@@ -34,7 +66,7 @@ struct SeeThroughBlock {
     float scene_max_lod;
 };
 
-cbuffer SeeThrough : register(b4) {
+cbuffer SeeThrough : LACQUER_AT(b4, b7, space0) {
     SeeThroughBlock see_through;
 };
 
@@ -68,20 +100,30 @@ struct MaterialBlock {
     float dielectric;
 };
 
-cbuffer Material : register(b2) {
+cbuffer Material : LACQUER_AT(b2, b0, space1) {
     MaterialBlock material;
 };
 
-TextureCube environment_specular : register(t0);
-SamplerState environment_specular_sampler : register(s0);
-TextureCube environment_irradiance : register(t1);
-SamplerState environment_irradiance_sampler : register(s1);
-Texture2D environment_dfg : register(t2);
-SamplerState environment_dfg_sampler : register(s2);
-Texture2D scene_behind : register(t4);
-SamplerState scene_behind_sampler : register(s4);
-Texture2D iridescence_thickness_texture : register(t3);
-SamplerState iridescence_thickness_texture_sampler : register(s3);
+TextureCube environment_specular : LACQUER_AT(t0, t2, space0);
+#ifndef environment_specular_sampler
+SamplerState environment_specular_sampler : LACQUER_AT(s0, s2, space0);
+#endif
+TextureCube environment_irradiance : LACQUER_AT(t1, t3, space0);
+#ifndef environment_irradiance_sampler
+SamplerState environment_irradiance_sampler : LACQUER_AT(s1, s3, space0);
+#endif
+Texture2D environment_dfg : LACQUER_AT(t2, t4, space0);
+#ifndef environment_dfg_sampler
+SamplerState environment_dfg_sampler : LACQUER_AT(s2, s4, space0);
+#endif
+Texture2D scene_behind : LACQUER_AT(t4, t8, space0);
+#ifndef scene_behind_sampler
+SamplerState scene_behind_sampler : LACQUER_AT(s4, s8, space0);
+#endif
+Texture2D iridescence_thickness_texture : LACQUER_AT(t3, t1, space1);
+#ifndef iridescence_thickness_texture_sampler
+SamplerState iridescence_thickness_texture_sampler : LACQUER_AT(s3, s1, space1);
+#endif
 
 void main(
     float3 v_position : TEXCOORD0,

@@ -152,8 +152,8 @@ typedef struct {
   uint32_t validated;
 } lacquer_packed_code;
 
-/* Where a block or a texture is bound: by Vulkan, by OpenGL and HLSL (`flat`); by WGSL and by MSL where the
- * file has their shaders, else 0. */
+/* Where a block or a texture is bound: by Vulkan and Direct3D 12, by OpenGL and Direct3D 11 (`flat`); by WGSL
+ * and by MSL where the file has their shaders, else 0. */
 typedef struct {
   uint32_t set, binding, flat;
   uint32_t wgsl_group, wgsl_binding, wgsl_sampler;

@@ -14,9 +14,9 @@
 
 namespace lacquer {
 
-/// Where the contract has a block or a texture. Vulkan (glsl, spirv) has it at `set` and `binding`; OpenGL
-/// and HLSL at `flat` of its kind: a block's binding point and bN, a texture's unit, tN and sN. ESSL finds it
-/// by name.
+/// Where the contract has a block or a texture. Vulkan (glsl, spirv) has it at `set` and `binding`, and so
+/// has HLSL for Shader Model 6, in the space of the set; OpenGL and HLSL for Shader Model 5.0 at `flat` of
+/// its kind: a block's binding point and bN, a texture's unit, tN and sN. ESSL finds it by name.
 struct BindingPoint {
   uint32_t set = 0, binding = 0, flat = 0;
 };
@@ -128,6 +128,21 @@ struct OptimizedFigures {
   double error = 0;  ///< by which approximations change a colour at most, as a part of it or of the light
 };
 
+/// A parameter of the root signature of Direct3D 12 (docs/bindings.md).
+enum class RootKind : uint8_t {
+  Constants,  ///< one 32-bit number: which object is drawn, where the HLSL is compiled with LACQUER_OBJECTS
+  Block,      ///< a constant buffer view in the root: the block whose binding is `binding`
+  Blocks,     ///< a table of the blocks of a set, of templates with more of them than fit into the root
+  Textures,   ///< a table of the set's textures and lists: the view of binding N is N behind its beginning
+  Samplers,   ///< the same of their samplers
+};
+struct RootParameter {
+  RootKind kind = RootKind::Constants;
+  uint32_t space = 0;  ///< the set
+  uint32_t binding = 0;
+  uint32_t count = 0;  ///< of Blocks: views in the table
+};
+
 struct Reflection {
   std::string template_name;
   std::vector<UniformBlock> blocks;  ///< those that the shader reads
@@ -146,6 +161,10 @@ struct Reflection {
   std::optional<OptimizedFigures> optimized;
   /// What requestDevice() of WebGPU must be asked for beyond its defaults.
   std::vector<std::pair<std::string, size_t>> webgpu_limits;
+  /// Of Direct3D 12, the same for all shaders of a template: what LACQUER_ROOT_SIGNATURE is in the HLSL, and
+  /// its parameters in their order.
+  std::string root_signature;
+  std::vector<RootParameter> root_parameters;
 };
 
 }  // namespace lacquer

@@ -122,6 +122,13 @@ TEST_F(Dxc, profiles) {
   EXPECT_EQ(log(), "ps_6_0 main\n");
 }
 
+/// What a shader reads and its root signature does not bind is an error of dxc's.
+TEST_F(Dxc, isGivenTheRootSignature) {
+  install("echo \"$8 $9\" > \"${0%/bin/dxc}/log\"\n");
+  EXPECT_TRUE(compileWithDxc("#define LACQUER_ROOT_SIGNATURE \"\"\n", Stage::Fragment, "a.hlsl").empty());
+  EXPECT_EQ(log(), "-rootsig-define LACQUER_ROOT_SIGNATURE\n");
+}
+
 TEST_F(Dxc, errorsAreReadAndNamed) {
   install(
       "for last; do :; done\n"

@@ -184,8 +184,8 @@ TEST_F(Contract, BlocksAndSamplersAreCalledWhatTheTextsCallThem) {
       const std::string name = texture["name"];
       for (const char* target : {"glsl", "glsl-gl", "essl"})
         EXPECT_NE(texts[target].find(fmt::format(" {};", name)), std::string::npos) << target << name;
-      EXPECT_NE(texts["hlsl"].find(fmt::format(" {} : register(t", name)), std::string::npos) << name;
-      EXPECT_NE(texts["hlsl"].find(fmt::format(" {} : register(s", texture["sampler"].get<std::string>())),
+      EXPECT_NE(texts["hlsl"].find(fmt::format(" {} : LACQUER_AT(t", name)), std::string::npos) << name;
+      EXPECT_NE(texts["hlsl"].find(fmt::format(" {} : LACQUER_AT(s", texture["sampler"].get<std::string>())),
                 std::string::npos)
           << name;
     }

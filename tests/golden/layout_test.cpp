@@ -8,6 +8,7 @@
 
 #include "check/check.h"
 #include "check/reflect.h"
+#include "ir/module.h"
 #include "output.h"
 #include "support/cases.h"
 
@@ -197,7 +198,9 @@ void expectOneLayout(const Shader& shader, Stage stage, std::set<std::string>& s
   const Compiled all[] = {
       {"GLSL for Vulkan", compiled(text(Target::Glsl), Target::Glsl, stage), false},
       {"GLSL for OpenGL", compiled(text(Target::GlslGl), Target::GlslGl, stage), true},
-      {"HLSL", compiled(text(Target::Hlsl), Target::Hlsl, stage), true},
+      {"HLSL", compiled(text(Target::Hlsl), Target::Hlsl, stage), false},
+      {"HLSL without spaces",
+       compiled("#define LACQUER_SPACES 0\n" + text(Target::Hlsl), Target::Hlsl, stage), true},
       {"SPIR-V", stage == Stage::Vertex ? shader.vertexSpirv() : shader.fragmentSpirv(), false},
   };
   const Json uniforms = Json::parse(shader.interfaceJson())["uniforms"];
@@ -205,7 +208,7 @@ void expectOneLayout(const Shader& shader, Stage stage, std::set<std::string>& s
   for (const Compiled& one : all) {
     SCOPED_TRACE(one.name);
     const Layout layout(one.words);
-    EXPECT_FALSE(layout.has(std::string_view(one.name) == "HLSL" ? kColMajor : kRowMajor));
+    EXPECT_FALSE(layout.has(std::string_view(one.name).starts_with("HLSL") ? kColMajor : kRowMajor));
     const std::map<std::string, check::Block> blocks = blocksOf(one.words);
     EXPECT_EQ(blocks.size(), count);
     for (const auto& [name, block] : blocks) {
@@ -259,6 +262,29 @@ void expectLayouts(const std::string& template_name, const std::set<std::string>
 TEST(Layout, forward) { expectLayouts("forward", {"frame", "lights", "material", "object"}); }
 TEST(Layout, surface) { expectLayouts("surface", {"frame", "material", "object"}); }
 TEST(Layout, bsdf) { expectLayouts("bsdf", {"material"}); }
+
+/// An engine binds what the frame and an object have once for all shaders of a template.
+TEST(Layout, registersOfTheFrameAreTheSameInAllShaders) {
+  Options options;
+  options.validate = false;
+  options.targets = {Target::Hlsl};
+  std::map<std::string, std::set<std::pair<uint32_t, uint32_t>>> places;
+  forEachShader(options, [&](const Shader& shader) {
+    for (const Stage stage : {Stage::Vertex, Stage::Fragment}) {
+      const std::string text =
+          stage == Stage::Vertex ? shader.vertexText(Target::Hlsl) : shader.fragmentText(Target::Hlsl);
+      if (text.empty()) continue;
+      const Spirv words = compiled(text, Target::Hlsl, stage);
+      for (const auto& [name, block] : blocksOf(words)) places[name].emplace(block.set, block.binding);
+      for (const check::Taken& one : check::reflectPlaces(words)) {
+        if (!one.block && one.set != ir::kMaterialBinding.set) places[one.name].emplace(one.set, one.binding);
+      }
+    }
+  });
+  for (const auto& [name, seen] : places) EXPECT_EQ(seen.size(), 1U) << name;
+  for (const char* name : {"environment_dfg", "environment_dfg_sampler", "scene_behind", "Frame", "Object"})
+    EXPECT_EQ(places.count(name), 1U) << name;
+}
 
 /// The comparison sees a member that has moved.
 TEST(Layout, differencesAreSeen) {

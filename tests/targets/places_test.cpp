@@ -67,7 +67,7 @@ TEST(Places, AClashIsFoundInTheTexts) {
     std::string_view expected;
   };
   for (const Text& text : {Text{Target::Glsl, "set 1, binding 1"}, Text{Target::GlslGl, "binding 3"},
-                           Text{Target::Hlsl, "set 0, binding 19"}}) {
+                           Text{Target::Hlsl, "set 1, binding 17"}}) {
     for (const bool clash : {false, true}) {
       const std::string source = printed(twoTextures(clash), text.target);
       const Result<check::Spirv> words =

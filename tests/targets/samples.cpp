@@ -347,6 +347,11 @@ check::Spirv expectCompiles(const std::string& text, Stage stage, Target target)
     const Diagnostics wrong = check::validate(*words, target == Target::GlslGl, name);
     EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;
   }
+  if (target == Target::Hlsl) {
+    const Result<check::Spirv> model_5 =
+        check::compile("#define LACQUER_SPACES 0\n" + text, target, check_stage, name);
+    EXPECT_TRUE(model_5) << text;
+  }
   if (target == Target::Hlsl && check::haveDxc()) {
     const Diagnostics wrong = check::compileWithDxc(text, check_stage, name);
     EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;

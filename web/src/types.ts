@@ -284,6 +284,8 @@ export interface Interface {
     content?: 'color' | 'normal' | 'data';
   }[];
   inputs?: { name: string; location: number; type: string }[];
+  /** Of the target "hlsl": the root signature of Direct3D 12 (docs/bindings.md). */
+  d3d12?: { root_signature: string; parameters: { kind: string; space: number; binding?: number; count?: number }[] };
   /** Of the target "wgsl": what createBindGroupLayout wants (docs/bindings.md). */
   webgpu?: { bindings: { name: string; group: number; binding: number; visibility: string[]; [kind: string]: unknown }[] };
   [key: string]: unknown;

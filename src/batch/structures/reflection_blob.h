@@ -14,7 +14,15 @@ template <>
 struct LastEnumerator<TextureRole> {
   static constexpr TextureRole value = TextureRole::Object;
 };
+template <>
+struct LastEnumerator<RootKind> {
+  static constexpr RootKind value = RootKind::Samplers;
+};
 
+template <class Archive>
+void fields(Archive& archive, RootParameter& of) {
+  archive(of.kind, of.space, of.binding, of.count);
+}
 template <class Archive>
 void fields(Archive& archive, BoundResource& of) {
   archive(of.name, of.at.set, of.at.binding, of.at.flat, of.vertex, of.fragment);
@@ -66,7 +74,8 @@ void fields(Archive& archive, OperationProof& of) {
 template <class Archive>
 void fields(Archive& archive, Reflection& of) {
   archive(of.template_name, of.blocks, of.parameters, of.has_spec_constants, of.spec_constants, of.textures,
-          of.inputs, of.outputs, of.depth, of.displaces, of.proved, of.unproved, of.webgpu_limits);
+          of.inputs, of.outputs, of.depth, of.displaces, of.proved, of.unproved, of.webgpu_limits,
+          of.root_signature, of.root_parameters);
   RelaxedFigures figures = of.relaxed.value_or(RelaxedFigures());
   bool relaxed = of.relaxed.has_value();
   archive(relaxed, figures.bound, figures.operations, figures.of_operations, figures.cycles,

@@ -17,8 +17,8 @@ enum class Stage : uint8_t { Vertex, Fragment };
 using Spirv = std::vector<uint32_t>;
 
 /// HLSL numbers cbuffers, textures and samplers apart (b0, t0, s0); Vulkan has one row of bindings per set.
-/// In SPIR-V made from HLSL, `register(bN)` becomes binding N + kHlslBufferShift, and so on, all in set 0.
-/// The gaps are the limits: 16 cbuffers and 32 textures.
+/// In SPIR-V made from HLSL, `register(bN, spaceM)` becomes binding N + kHlslBufferShift of set M, and so on.
+/// The gaps are the limits: 16 cbuffers and 32 textures of a set.
 inline constexpr uint32_t kHlslBufferShift = 0;
 inline constexpr uint32_t kHlslTextureShift = 16;
 inline constexpr uint32_t kHlslSamplerShift = 48;
@@ -39,7 +39,8 @@ Diagnostics checkWords(const Spirv& words, const std::string& name);
 /// Compiles the text of a target that glslang knows. `name` is the file name in diagnostics. For
 /// Checker::Vulkan and Direct3d the result is SPIR-V 1.3 for Vulkan 1.1; OpenGl gives OpenGL SPIR-V, after
 /// the text has passed as a driver's input, too; Es is only checked (the result is empty). The text must
-/// begin with the row's version. HLSL's entry point is `main`; its cbuffers keep the offsets of HLSL's
+/// begin with the row's version. HLSL is compiled as for Shader Model 6; its entry point is
+/// `main`, and its cbuffers keep the offsets of HLSL's
 /// packing rules, except behind an array: Direct3D goes on in the last element's register, glslang in the
 /// next one. The errors are glslang's messages, one diagnostic each, code "glslang". Safe to call from
 /// several threads.
@@ -67,7 +68,8 @@ bool haveDxc();
 /// and when it was modified. Empty where there is none.
 std::string dxcIdentity();
 
-/// Compiles HLSL with dxc (profile vs_6_0 / ps_6_0). An empty list when it compiles; without dxc one error,
+/// Compiles HLSL with dxc (profile vs_6_0 / ps_6_0), with the root signature LACQUER_ROOT_SIGNATURE where the
+/// text defines it. An empty list when it compiles; without dxc one error,
 /// "dxc-missing". Code "dxc". Safe to call from several threads, as long as none changes the environment.
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name);
 

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "check/check.h"
 #include "check/program.h"
@@ -150,9 +152,20 @@ Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::stri
 
   const fs::path log_file = folder.path() / "log.txt";
   const char* profile = stage == Stage::Vertex ? "vs_6_0" : "ps_6_0";
-  const auto status = runProgram({program->string(), "-nologo", "-T", profile, "-E", "main", "-Fo",
-                                  (folder.path() / "shader.dxil").string(), source},
-                                 log_file);
+  std::vector<std::string> words = {program->string(),
+                                    "-nologo",
+                                    "-T",
+                                    profile,
+                                    "-E",
+                                    "main",
+                                    "-Fo",
+                                    (folder.path() / "shader.dxil").string()};
+  // It says what of the shader its root signature does not bind.
+  constexpr const char* kSignature = "LACQUER_ROOT_SIGNATURE";
+  if (text.find(std::string("#define ") + kSignature + ' ') != std::string::npos)
+    words.insert(words.end(), {"-rootsig-define", kSignature});
+  words.push_back(source);
+  const auto status = runProgram(std::move(words), log_file);
   if (!status) return {dxcError("dxc", name, fmt::format("{} could not be run", program->string()))};
   if (*status == 0) return {};
   std::ostringstream log;

@@ -172,6 +172,9 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, const targets::Row
   return diagnostic;
 }
 
+/// What DXC says of the model that is compiled for; a text may say otherwise.
+constexpr const char* kShaderModel = "#define __SHADER_TARGET_MAJOR 6\n#define __SHADER_TARGET_MINOR 0\n";
+
 /// The one place that knows glslang's HLSL front end, which is deprecated there: whatever replaces it goes
 /// here. SPIR-V made from HLSL is legalized by glslang itself, because opaque values pass through functions.
 EShMessages setUpHlsl(glslang::TShader& shader, EShLanguage stage) {
@@ -179,6 +182,7 @@ EShMessages setUpHlsl(glslang::TShader& shader, EShLanguage stage) {
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
   shader.setSourceEntryPoint("main");
+  shader.setPreamble(kShaderModel);
   shader.setShiftBinding(glslang::EResUbo, kHlslBufferShift);
   shader.setShiftBinding(glslang::EResTexture, kHlslTextureShift);
   shader.setShiftBinding(glslang::EResSsbo,

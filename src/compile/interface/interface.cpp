@@ -6,6 +6,7 @@
 
 #include "analysis/relax.h"
 #include "interface/proofs.h"
+#include "targets/root_signature.h"
 #include "targets/target.h"
 
 namespace lacquer {
@@ -248,6 +249,8 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
     made.optimized = {
         static_cast<uint32_t>(of.level), of.family, of.by, of.cycles, of.plain, of.growth, of.error};
   }
+  made.root_signature = targets::rootSignature(module);
+  made.root_parameters = targets::rootParameters(module);
   made.webgpu_limits = webgpuLimits(made, module.varyings.size());
   return made;
 }

@@ -36,6 +36,10 @@ struct Words<TextureRole> {
   static constexpr std::string_view kAll[] = {"material", "environment", "object"};
 };
 template <>
+struct Words<RootKind> {
+  static constexpr std::string_view kAll[] = {"constants", "block", "blocks", "textures", "samplers"};
+};
+template <>
 struct Words<Message::Level> {
   static constexpr std::string_view kAll[] = {"note", "warning", "error"};
 };
@@ -592,6 +596,27 @@ void members(A& a, Of<A, OptimizedFigures>& of) {
   a("of_cycles", of.of_cycles);
   a("error_growth", of.error_growth);
   a("error", of.error);
+}
+
+template <class A>
+void members(A& a, Of<A, RootParameter>& of) {
+  a.is("the root parameter");
+  a("kind", of.kind);
+  a("space", of.space);
+  if (of.kind == RootKind::Block) a("binding", of.binding);
+  if (of.kind == RootKind::Blocks) a("count", of.count);
+}
+
+/// How Direct3D 12 binds it, of a shader with HLSL.
+template <class A>
+struct RootSignatureOf {
+  Of<A, Reflection>& reflection;
+};
+template <class A>
+void members(A& a, const RootSignatureOf<A>& of) {
+  a.is("the root signature");
+  a("root_signature", of.reflection.root_signature);
+  a("parameters", of.reflection.root_parameters);
 }
 
 /// Of every target.

@@ -351,6 +351,10 @@ private:
     object("files", files);
     object("validated", validated);
     manifest::members(object, to.reflection);
+    if (object.has("d3d12")) {
+      RootSignatureOf<ReadObject> root_signature{to.reflection};
+      object("d3d12", root_signature);
+    }
     const Path of_files(path, "files");
     for (auto& [name, kinds] : files) target(id, name, kinds, Path(of_files, name), to);
     for (const auto& [name, good] : validated) {

@@ -184,7 +184,7 @@ void writeMetal(const Reflection& of, bool argument_buffers, JsonText& to) {
   to.endArray().endObject();
 }
 
-/// Whether one of the targets is bound as this member says: "webgpu", "metal".
+/// Whether one of the targets is bound as this member says: "d3d12", "webgpu", "metal".
 bool isShown(std::string_view member, std::span<const Target> targets) {
   return std::any_of(targets.begin(), targets.end(),
                      [&](Target target) { return targets::row(target).binds == member; });
@@ -194,6 +194,10 @@ void writeReflectionMembers(const Reflection& of, std::span<const Target> target
                             JsonText& to) {
   WrittenObject object(to);
   members(object, of);
+  if (isShown("d3d12", targets)) {
+    const RootSignatureOf<WrittenObject> root_signature{of};
+    object("d3d12", root_signature);
+  }
   if (isShown("webgpu", targets)) {
     to.key("webgpu");
     writeWebGpu(of, to);

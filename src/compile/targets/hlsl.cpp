@@ -5,11 +5,13 @@
 // both stages, and the fragment stage need not declare a position that it does not read.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <set>
 #include <vector>
 
 #include "targets/clike.h"
+#include "targets/root_signature.h"
 #include "targets/target.h"
 
 namespace lacquer::targets {
@@ -20,6 +22,27 @@ namespace {
 
 /// The function that says how large a texture is.
 constexpr std::string_view kSize = "lacquer_size";
+
+/// One text has both. Shader Model 5.0 has no spaces; fxc does not say which model it compiles for, so that
+/// who compiles for 5.1 says it.
+constexpr std::string_view kPlaces[] = {
+    "// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for "
+    "5.1.",
+    "// Shader Model 5.0 has one row of registers for all sets.",
+    "#ifndef LACQUER_SPACES",
+    "#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)",
+    "#endif",
+    "#if LACQUER_SPACES",
+    "#define LACQUER_AT(row, place, space) register(place, space)",
+    "#else",
+    "#define LACQUER_AT(row, place, space) register(row)",
+    "#endif",
+};
+
+/// Where it is, of the registers that `kind` names.
+std::string placeOf(char kind, const ir::Binding& at) {
+  return fmt::format("LACQUER_AT({0}{1}, {0}{2}, space{3})", kind, at.flat, at.binding, at.set);
+}
 
 /// glTF numbers its semantics as TEXCOORD_0, HLSL as TEXCOORD0.
 std::string semantic(const ir::Attribute& attribute) {
@@ -119,6 +142,13 @@ public:
       if (!first) text.blank();
       first = false;
     };
+    if (!program.blocks.empty() || !program.textures.empty()) {
+      blank();
+      for (const std::string_view line : kPlaces) text.line(line);
+      text.blank();
+      signature(text, module);
+    }
+    draw(text, module, program);
     for (uint32_t index : program.blocks) {
       blank();
       block(text, module.blocks[index]);
@@ -128,9 +158,57 @@ public:
     sizes(text, module, program);
     blank();
     openMain(text, parameters(module, program));
+    openObjects(text, module, program);
   }
 
 private:
+  /// A define that `dxc -rootsig-define` and `-T rootsig_1_1 -E` take; it holds whatever else is defined.
+  static void signature(Text& text, const ir::Module& module) {
+    text.line("#define LACQUER_ROOT_SIGNATURE \\");
+    text.indent();
+    const std::vector<std::string> parts = rootSignatureParts(module);
+    for (size_t i = 0; i < parts.size(); ++i)
+      text.line(fmt::format("\"{}{}", parts[i], i + 1 < parts.size() ? ", \" \\" : "\""));
+    text.outdent();
+  }
+
+  static bool ofObject(const ir::Block& block) { return block.role == ir::BlockRole::Object; }
+
+  /// The objects of a frame in one buffer: a draw says which is its own, in a root constant.
+  static void draw(Text& text, const ir::Module& module, const schedule::Program& program) {
+    if (std::none_of(program.blocks.begin(), program.blocks.end(),
+                     [&](uint32_t index) { return ofObject(module.blocks[index]); }))
+      return;
+    text.blank();
+    text.line("// With -D LACQUER_OBJECTS the blocks of all objects are elements of buffers.");
+    text.line("#ifdef LACQUER_OBJECTS");
+    text.line(fmt::format("cbuffer LacquerDraw : register(b0, space{}) {{", kDrawSpace));
+    text.indent();
+    text.line("uint lacquer_object;");
+    text.outdent();
+    text.line("};");
+    text.line("#endif");
+  }
+
+  static std::string objectsName(const ir::Block& block) {
+    return fmt::format("lacquer_{}_list", block.instance);
+  }
+
+  static void openObjects(Text& text, const ir::Module& module, const schedule::Program& program) {
+    bool any = false;
+    for (const uint32_t index : program.blocks) {
+      const ir::Block& block = module.blocks[index];
+      if (!ofObject(block)) continue;
+      if (!any) text.line("#ifdef LACQUER_OBJECTS");
+      any = true;
+      text.indent();
+      text.line(
+          fmt::format("{}Block {} = {}[lacquer_object];", block.name, block.instance, objectsName(block)));
+      text.outdent();
+    }
+    if (any) text.line("#endif");
+  }
+
   /// GetDimensions is no expression: a function for each type of texture whose size is asked for.
   void sizes(Text& text, const ir::Module& module, const schedule::Program& program) const {
     std::set<std::string_view> known;
@@ -155,28 +233,39 @@ private:
     const bool array = block.array != 0;
     const std::string structure = block.plural() ? block.name : block.name + "Block";
     text.line(fmt::format("struct {} {{", structure));
-    printMembers(text, *this, block);
+    ir::Block declared = block;
+    declared.list = block.list || ofObject(block);  // or is an element of one
+    printMembers(text, *this, declared);
     text.line("};");
     text.blank();
     if (block.list) {
-      text.line(fmt::format("StructuredBuffer<{}> {}s : register(t{});", structure, block.instance,
-                            block.binding.flat));
+      text.line(fmt::format("StructuredBuffer<{}> {}s : {};", structure, block.instance,
+                            placeOf('t', block.binding)));
       return;
     }
-    text.line(fmt::format("cbuffer {} : register(b{}) {{", blockName(block), block.binding.flat));
+    if (ofObject(block)) {
+      text.line("#ifdef LACQUER_OBJECTS");
+      text.line(fmt::format("StructuredBuffer<{}> {} : register(t{}, space{});", structure,
+                            objectsName(block), block.binding.binding, block.binding.set));
+      text.line("#else");
+    }
+    text.line(fmt::format("cbuffer {} : {} {{", blockName(block), placeOf('b', block.binding)));
     text.indent();
     text.line(array ? fmt::format("{} {}s[{}];", structure, block.instance, block.array)
                     : fmt::format("{} {};", structure, block.instance));
     text.outdent();
     text.line("};");
+    if (ofObject(block)) text.line("#endif");
   }
 
   void texture(Text& text, const ir::TextureSlot& slot) const {
-    const uint32_t number = slot.binding.flat;
     const bool compares = slot.type == Type::Texture2DShadow;
-    text.line(fmt::format("{} {} : register(t{});", type(slot.type), slot.name, number));
-    text.line(fmt::format("{} {} : register(s{});", compares ? "SamplerComparisonState" : "SamplerState",
-                          samplerName(slot), number));
+    text.line(fmt::format("{} {} : {};", type(slot.type), slot.name, placeOf('t', slot.binding)));
+    // A define of that name shares another texture's: the file's textures often have one sampler.
+    text.line("#ifndef " + samplerName(slot));
+    text.line(fmt::format("{} {} : {};", compares ? "SamplerComparisonState" : "SamplerState",
+                          samplerName(slot), placeOf('s', slot.binding)));
+    text.line("#endif");
   }
 
   std::vector<std::string> parameters(const ir::Module& module, const schedule::Program& program) const {

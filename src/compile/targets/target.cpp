@@ -72,6 +72,7 @@ const Row kBuiltIn[] = {
      .files = filesOf("vert.hlsl", "frag.hlsl"),
      .dialect = hlsl,
      .checker = Checker::Direct3d,
+     .binds = "d3d12",
      .limits = &kDirect3d,
      .prose = "HLSL for Shader Model 5 and 6"},
     {.id = Target::Spirv,

@@ -49,8 +49,7 @@ public:
 
 private:
   vulkan::BindingPlace placeOf(const ir::Binding& binding, uint32_t shift) const {
-    return hlsl_ ? vulkan::BindingPlace{0, binding.flat + shift}
-                 : vulkan::BindingPlace{binding.set, binding.binding};
+    return {binding.set, binding.binding + (hlsl_ ? shift : 0)};
   }
 
   void missing(const std::string& name) {

@@ -40,7 +40,7 @@ inline constexpr uint32_t kMostColors = 8;
 inline constexpr std::string_view kPackedPrefix = "packed_";
 
 /// Where something is bound: descriptor set and binding for Vulkan; `flat` for the targets without sets
-/// (OpenGL's block binding or texture unit, HLSL's register number). See docs/bindings.md.
+/// (OpenGL's block binding or texture unit, HLSL's register in Shader Model 5.0). See docs/bindings.md.
 struct Binding {
   uint32_t set = 0;
   uint32_t binding = 0;

@@ -1,5 +1,30 @@
 // Printed by the tests.
 
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
+#define LACQUER_ROOT_SIGNATURE \
+    "RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT), " \
+    "RootConstants(num32BitConstants=1, b0, space=3), " \
+    "CBV(b0, space=2), " \
+    "DescriptorTable(SRV(t0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=1), " \
+    "DescriptorTable(SRV(t0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=0), " \
+    "CBV(b1, space=0), " \
+    "DescriptorTable(SRV(t0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE))"
+
 struct FrameBlock {
     column_major float4x4 view_projection;
     float3 camera_position;
@@ -7,7 +32,7 @@ struct FrameBlock {
     float exposure;
 };
 
-cbuffer Frame : register(b0) {
+cbuffer Frame : LACQUER_AT(b0, b0, space0) {
     FrameBlock frame;
 };
 
@@ -18,7 +43,7 @@ struct Light {
     int type;
 };
 
-cbuffer Lights : register(b1) {
+cbuffer Lights : LACQUER_AT(b1, b1, space0) {
     Light lights[16];
 };
 
@@ -28,14 +53,18 @@ struct MaterialBlock {
     float2 uv_scale;
 };
 
-cbuffer Material : register(b2) {
+cbuffer Material : LACQUER_AT(b2, b0, space1) {
     MaterialBlock material;
 };
 
-Texture2D base_color_texture : register(t3);
-SamplerState base_color_texture_sampler : register(s3);
-TextureCube environment_texture : register(t0);
-SamplerState environment_texture_sampler : register(s0);
+Texture2D base_color_texture : LACQUER_AT(t3, t1, space1);
+#ifndef base_color_texture_sampler
+SamplerState base_color_texture_sampler : LACQUER_AT(s3, s1, space1);
+#endif
+TextureCube environment_texture : LACQUER_AT(t0, t2, space0);
+#ifndef environment_texture_sampler
+SamplerState environment_texture_sampler : LACQUER_AT(s0, s2, space0);
+#endif
 
 void main(
     float3 v_position : TEXCOORD0,

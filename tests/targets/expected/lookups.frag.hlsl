@@ -1,15 +1,47 @@
 // Printed by the tests.
 
-Texture2D map : register(t3);
-SamplerState map_sampler : register(s3);
-TextureCube around : register(t0);
-SamplerState around_sampler : register(s0);
-Texture2D depths : register(t1);
-SamplerComparisonState depths_sampler : register(s1);
-Texture2DArray tiles : register(t2);
-SamplerState tiles_sampler : register(s2);
-Texture3D volume : register(t3);
-SamplerState volume_sampler : register(s3);
+// Shader Model 6: the register is the binding and the space the set; so with -D LACQUER_SPACES=1 for 5.1.
+// Shader Model 5.0 has one row of registers for all sets.
+#ifndef LACQUER_SPACES
+#define LACQUER_SPACES (__SHADER_TARGET_MAJOR >= 6)
+#endif
+#if LACQUER_SPACES
+#define LACQUER_AT(row, place, space) register(place, space)
+#else
+#define LACQUER_AT(row, place, space) register(row)
+#endif
+
+#define LACQUER_ROOT_SIGNATURE \
+    "RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT), " \
+    "RootConstants(num32BitConstants=1, b0, space=3), " \
+    "DescriptorTable(SRV(t0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=2, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "CBV(b0, space=1), " \
+    "DescriptorTable(SRV(t0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=1, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(SRV(t0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE)), " \
+    "DescriptorTable(Sampler(s0, space=0, numDescriptors=unbounded, flags=DESCRIPTORS_VOLATILE))"
+
+Texture2D map : LACQUER_AT(t3, t1, space1);
+#ifndef map_sampler
+SamplerState map_sampler : LACQUER_AT(s3, s1, space1);
+#endif
+TextureCube around : LACQUER_AT(t0, t2, space0);
+#ifndef around_sampler
+SamplerState around_sampler : LACQUER_AT(s0, s2, space0);
+#endif
+Texture2D depths : LACQUER_AT(t1, t3, space0);
+#ifndef depths_sampler
+SamplerComparisonState depths_sampler : LACQUER_AT(s1, s3, space0);
+#endif
+Texture2DArray tiles : LACQUER_AT(t2, t4, space0);
+#ifndef tiles_sampler
+SamplerState tiles_sampler : LACQUER_AT(s2, s4, space0);
+#endif
+Texture3D volume : LACQUER_AT(t3, t5, space0);
+#ifndef volume_sampler
+SamplerState volume_sampler : LACQUER_AT(s3, s5, space0);
+#endif
 
 int2 lacquer_size(Texture2D map, int level) {
     uint width, height, levels;
