@@ -1,5 +1,6 @@
 // One picture: what is bound, in which order it is drawn.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -174,15 +175,23 @@ void Renderer::fillFrame(Stage& stage, const View& view, const Matrix& view_proj
   vkUpdateDescriptorSets(device_.handle(), writes.size(), writes.data(), 0, nullptr);
 }
 
+/// Whose layout, textures and vertex inputs a use is drawn with.
+lacquer::Drawn Renderer::boundOf(const Stage& stage, const lacquer::Drawn& drawn) {
+  const lacquer::Drawn fallback = stage.contract.fallback(drawn);
+  return fallback ? fallback : drawn;
+}
+
 /// The set of a material's use, with what animations make of its numbers.
 void Renderer::fillMaterial(Stage& stage, const lacquer::Drawn& drawn) {
   const auto [it, fresh] = stage.materials.try_emplace(drawn.use, VK_NULL_HANDLE);
   if (!fresh) return;
-  const lacquer::Shader& shader = drawn.shader->shader;
-  const Stage::Code& code = stage.code[drawn.use->shader];
+  // A fallback's set is the material's own: it has what both read.
+  const lacquer::Drawn bound = boundOf(stage, drawn);
+  const lacquer::Shader& shader = bound.shader->shader;
+  const Stage::Code& code = stage.code[bound.use->shader];
   const VkDescriptorSet set = it->second = allocate(code.materials, code.bindings, vk::kMaterialSet);
   const auto animated = [&](std::string_view name, std::span<double> numbers) {
-    for (const lacquer::UsedParameter& parameter : drawn.use->parameters) {
+    for (const lacquer::UsedParameter& parameter : bound.use->parameters) {
       const auto found = moment_.pointers.find(parameter.pointer);
       if (parameter.name != name || found == moment_.pointers.end() || found->second.size() != numbers.size())
         continue;
@@ -192,8 +201,9 @@ void Renderer::fillMaterial(Stage& stage, const lacquer::Drawn& drawn) {
     return false;
   };
   vk::SetWrites writes;
-  std::vector<std::byte> block(shader.uniformSize());
-  shader.pack(lacquer::numbersOf(*drawn.use, animated), block);
+  std::vector<std::byte> block(std::max(shader.uniformSize(), drawn.shader->shader.uniformSize()));
+  drawn.shader->shader.pack(lacquer::numbersOf(*drawn.use, animated), block);
+  if (bound.use != drawn.use) shader.pack(lacquer::numbersOf(*bound.use, animated), block);
   for (const lacquer::UniformBlock& of : shader.reflection().blocks) {
     if (of.role != lacquer::BlockRole::Material) continue;
     const Buffer buffer = device_.buffer(block.data(), block.size(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
@@ -201,7 +211,7 @@ void Renderer::fillMaterial(Stage& stage, const lacquer::Drawn& drawn) {
   }
   for (const lacquer::ReflectedTexture& texture : shader.reflection().textures) {
     if (texture.role != lacquer::TextureRole::Material) continue;
-    for (const lacquer::UsedTexture& used : drawn.use->textures) {
+    for (const lacquer::UsedTexture& used : bound.use->textures) {
       if (used.slot != texture.name) continue;
       const auto place = static_cast<size_t>(std::max(used.texture, 0));
       const lacquer::TextureSampler of_file =
@@ -266,8 +276,45 @@ void Renderer::fillObject(Item& item) {
   vkUpdateDescriptorSets(device_.handle(), writes.size(), writes.data(), 0, nullptr);
 }
 
+VkPipeline Renderer::made(const Plan& plan) const {
+  vk::PipelineStates states(plan.input, plan.state, plan.mirrored, plan.colors ? 1 : 0);
+  if (plan.mode == Depth::Equal) states.depth.depthCompareOp = VK_COMPARE_OP_EQUAL;
+  if (plan.bias) {
+    states.raster.cullMode = VK_CULL_MODE_NONE;
+    states.raster.depthBiasEnable = VK_TRUE;
+    states.raster.depthBiasConstantFactor = 4;
+    states.raster.depthBiasSlopeFactor = 2;
+  }
+  states.setStages(plan.vertex, plan.fragment);
+  states.info.layout = plan.layout;
+  const VkFormat format = target_.format;
+  VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
+  rendering.colorAttachmentCount = plan.colors ? 1 : 0;
+  rendering.pColorAttachmentFormats = &format;
+  rendering.depthAttachmentFormat = kDepthFormat;
+  states.info.pNext = &rendering;
+  VkPipeline made = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &states.info, nullptr, &made),
+        "vkCreateGraphicsPipelines");
+  return made;
+}
+
+/// Takes the pipelines that are ready, between two frames.
+void Renderer::exchange(bool wait) {
+  for (auto it = color_.later.begin(); it != color_.later.end();) {
+    if (!wait && it->second.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+      ++it;
+      continue;
+    }
+    const VkPipeline made = color_.pipelines[it->first] = it->second.get();
+    device_.atEnd([this, made] { vkDestroyPipeline(device_.handle(), made, nullptr); });
+    it = color_.later.erase(it);
+  }
+}
+
+/// The fallback's while a thread compiles the material's own, which has all but the code from it.
 VkPipeline Renderer::pipelineOf(Stage& stage, const lacquer::Drawn& drawn, const Item& item, Depth mode) {
-  const lacquer::Shader& shader = drawn.shader->shader;
+  const lacquer::Drawn bound = boundOf(stage, drawn);
   const auto stream = [&](const lacquer::ShaderInput& input) -> vk::VertexStream {
     const Attributes& own = meshes_[item.draw.primitive].attributes;
     for (const Attributes* from : {&own, &item.instances.attributes}) {
@@ -276,54 +323,56 @@ VkPipeline Renderer::pipelineOf(Stage& stage, const lacquer::Drawn& drawn, const
     }
     return {VK_FORMAT_R32G32B32A32_SFLOAT, 0, 1};
   };
-  const bool colors = !shader.reflection().outputs.empty();
-  lacquer::DrawState state = drawn.material->state;
-  if (!colors || !settings_.shown.empty()) state.blend.reset();
-  if (mode != Depth::Own) state.depth_write = mode == Depth::First;
-  if (&stage == &sky_) state.depth_write = false;
-  vk::PipelineStates states(vk::VertexInput(shader.reflection(), stream), state, item.mirrored,
-                            colors ? 1 : 0);
-  if (mode == Depth::Equal) states.depth.depthCompareOp = VK_COMPARE_OP_EQUAL;
-  if (&stage == &shadow_) {
-    states.raster.cullMode = VK_CULL_MODE_NONE;
-    states.raster.depthBiasEnable = VK_TRUE;
-    states.raster.depthBiasConstantFactor = 4;
-    states.raster.depthBiasSlopeFactor = 2;
+  Plan plan;
+  plan.input = vk::VertexInput(bound.shader->shader.reflection(), stream);
+  plan.state = drawn.material->state;
+  plan.colors = !drawn.shader->shader.reflection().outputs.empty();
+  if (!plan.colors || !settings_.shown.empty()) plan.state.blend.reset();
+  if (mode != Depth::Own) plan.state.depth_write = mode == Depth::First;
+  if (&stage == &sky_) plan.state.depth_write = false;
+  plan.bias = &stage == &shadow_;
+  plan.mirrored = item.mirrored;
+  plan.mode = mode;
+  plan.layout = stage.code[bound.use->shader].layout;
+  std::string states = " " + std::to_string(plan.state.double_sided) +
+                       std::to_string(plan.state.blend.has_value()) + std::to_string(plan.state.depth_write) +
+                       std::to_string(item.mirrored) + std::to_string(static_cast<int>(mode));
+  for (const auto& binding : plan.input.bindings) states += " " + std::to_string(binding.stride);
+  for (const auto& attribute : plan.input.attributes) states += " " + std::to_string(attribute.format);
+  const auto with = [&](size_t shader) {
+    plan.vertex = stage.code[shader].vertex;
+    plan.fragment = stage.code[shader].fragment;
+    return std::to_string(shader) + states;
+  };
+  const std::string key = with(drawn.use->shader);
+  const auto known = stage.pipelines.find(key);
+  if (known != stage.pipelines.end()) return known->second;
+  const bool waits = bound.use->shader != drawn.use->shader;
+  if (waits) {
+    ++fallbacks_;
+    std::shared_future<VkPipeline>& later = stage.later[key];
+    if (!later.valid()) later = std::async(std::launch::async, [this, plan] { return made(plan); }).share();
   }
-  std::string key = std::to_string(drawn.use->shader) + " " + std::to_string(state.double_sided) +
-                    std::to_string(state.blend.has_value()) + std::to_string(state.depth_write) +
-                    std::to_string(item.mirrored) + std::to_string(static_cast<int>(mode));
-  for (const auto& binding : states.vertex_input.bindings) key += " " + std::to_string(binding.stride);
-  for (const auto& attribute : states.vertex_input.attributes) key += " " + std::to_string(attribute.format);
-  VkPipeline& made = stage.pipelines[key];
-  if (made != VK_NULL_HANDLE) return made;
-  const Stage::Code& code = stage.code[drawn.use->shader];
-  states.setStages(code.vertex, code.fragment);
-  states.info.layout = code.layout;
-  const VkFormat format = target_.format;
-  VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-  rendering.colorAttachmentCount = colors ? 1 : 0;
-  rendering.pColorAttachmentFormats = &format;
-  rendering.depthAttachmentFormat = kDepthFormat;
-  states.info.pNext = &rendering;
-  check(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &states.info, nullptr, &made),
-        "vkCreateGraphicsPipelines");
-  device_.atEnd([this, made] { vkDestroyPipeline(device_.handle(), made, nullptr); });
-  return made;
+  VkPipeline& pipeline = stage.pipelines[waits ? with(bound.use->shader) : key];
+  if (pipeline != VK_NULL_HANDLE) return pipeline;
+  pipeline = made(plan);
+  device_.atEnd([this, one = pipeline] { vkDestroyPipeline(device_.handle(), one, nullptr); });
+  return pipeline;
 }
 
 void Renderer::drawItem(VkCommandBuffer commands, Stage& stage, const lacquer::Drawn& drawn, const Item& item,
                         Depth mode) {
   const Mesh& mesh = meshes_[item.draw.primitive];
+  const lacquer::Drawn bound = boundOf(stage, drawn);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelineOf(stage, drawn, item, mode));
   const VkDescriptorSet sets[] = {stage.frame, stage.materials.at(drawn.use), item.object};
   for (uint32_t set = 0; set < vk::kSets; ++set) {
     if (sets[set] == VK_NULL_HANDLE) continue;
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, stage.code[drawn.use->shader].layout,
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, stage.code[bound.use->shader].layout,
                             set, 1, &sets[set], 0, nullptr);
   }
   uint32_t binding = 0;
-  for (const lacquer::ShaderInput& input : drawn.shader->shader.reflection().inputs) {
+  for (const lacquer::ShaderInput& input : bound.shader->shader.reflection().inputs) {
     const Attribute* from = nullptr;
     for (const Attributes* attributes : {&mesh.attributes, &item.instances.attributes}) {
       const auto it = attributes->find(input.name);
@@ -433,6 +482,8 @@ void Renderer::record(VkCommandBuffer commands) {
 
 std::vector<float> Renderer::draw(float seconds) {
   seconds_ = seconds;
+  fallbacks_ = 0;
+  exchange(false);
   moment_ = scene_.at(seconds, color_.contract);
   collect();
   const View view = viewOf();

@@ -16,6 +16,7 @@ struct Arguments {
   std::string scene, output, environment;
   renderer::Settings settings;
   uint32_t width = 960, height = 540, samples = 2;
+  bool last = false;  ///< of the frames that have fallbacks: the one after them
   float seconds = 0, exposure = 1;
 };
 
@@ -33,6 +34,8 @@ constexpr const char* kUsage =
     "  --exposure X           what radiance is multiplied by before tone mapping\n"
     "  --prepass              depth first, then colours where depth is equal\n"
     "  --programs N           at most so many shaders, which materials share\n"
+    "  --fallback first|last  draws at once, with shaders that all materials share, while their own compile; "
+    "the picture is that frame, or the first without them\n"
     "  --template NAME        draws what that template puts out first: depth, id, motion, surface\n"
     "  --cache DIR            keeps shaders and filtered environments\n";
 
@@ -81,7 +84,12 @@ Arguments argumentsOf(int argc, char** argv) {
       made.exposure = std::strtof(value, nullptr);
     else if (flag == "--programs")
       made.settings.programs = whole(value, 0, 1000000);
-    else if (flag == "--template")
+    else if (flag == "--fallback") {
+      made.settings.fallback = true;
+      made.last = std::strcmp(value, "last") == 0;
+      if (!made.last && std::strcmp(value, "first") != 0)
+        throw std::runtime_error(std::string("'") + value + "' is neither first nor last");
+    } else if (flag == "--template")
       made.settings.shown = value;
     else if (flag == "--cache")
       made.settings.cache = value;
@@ -157,7 +165,8 @@ int main(int argc, char** argv) {
                : renderer::environmentOf(with.environment, with.scene, with.settings.cache);
     renderer::Device device;
     renderer::Renderer renderer(device, with.scene, with.settings);
-    const std::vector<float> samples = renderer.draw(with.seconds);
+    std::vector<float> samples = renderer.draw(with.seconds);
+    while (with.last && renderer.hadFallbacks()) samples = renderer.draw(with.seconds);
     write(resolved(samples, with, with.output.ends_with(".pfm")), with);
     std::printf("%s: %s\n", with.output.c_str(), renderer.summary().c_str());
     return 0;

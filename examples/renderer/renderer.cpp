@@ -101,6 +101,8 @@ Renderer::Renderer(Device& device, const std::string& file, const Settings& sett
                              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
 }
 
+Renderer::~Renderer() { exchange(true); }
+
 /// The shaders of all materials for a template.
 void Renderer::makeStage(Stage& stage, const lacquer::Scene& materials, const std::string& name) {
   lacquer::Options options;
@@ -108,6 +110,7 @@ void Renderer::makeStage(Stage& stage, const lacquer::Scene& materials, const st
   options.targets = {lacquer::Target::Spirv};
   options.cache = settings_.cache;
   options.programs = settings_.programs;
+  options.fallback = settings_.fallback && &stage == &color_;
   options.programs_model = true;
   if (name == "forward_clustered") options.switches["light_shadows"] = true;
   if (name.starts_with("forward") && environment_.box) options.switches["local_environment"] = true;

@@ -1,6 +1,7 @@
 // Draws a scene with the shaders that the library makes of it.
 #pragma once
 
+#include <future>
 #include <optional>
 #include <tuple>
 
@@ -17,6 +18,7 @@ struct Settings {
   std::string variant;                 ///< a name of KHR_materials_variants; empty for none
   std::string shown;                   ///< a template whose first colour is drawn in place of the picture
   uint32_t programs = 0;               ///< lacquer::Options::programs
+  bool fallback = false;               ///< the first frame is drawn with fallbacks
   size_t camera = 0;                   ///< of those that the scene shows
   bool prepass = false;                ///< depth first: colours are then drawn where they are in front alone
 };
@@ -35,7 +37,8 @@ struct Stage {
   VkDescriptorSetLayout frame_layout = VK_NULL_HANDLE;
   VkDescriptorSet frame = VK_NULL_HANDLE;
   std::map<const lacquer::ContractUse*, VkDescriptorSet> materials;
-  std::map<std::string, VkPipeline> pipelines;  ///< by what they are made of
+  std::map<std::string, VkPipeline> pipelines;                  ///< by what they are made of
+  std::map<std::string, std::shared_future<VkPipeline>> later;  ///< that a thread compiles
 };
 
 /// A primitive at a node, ready to be drawn.
@@ -51,13 +54,27 @@ class Renderer {
 public:
   /// Throws what cannot be drawn at all; what is wrong with a part of the scene goes to stderr.
   Renderer(Device& device, const std::string& file, const Settings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
   /// Rows of linear RGBA from the top.
   std::vector<float> draw(float seconds);
+  /// Whether the last frame had a fallback in the place of a pipeline that was not there yet.
+  bool hadFallbacks() const { return fallbacks_ > 0; }
   /// What was found: primitives, triangles, shaders.
   std::string summary() const;
 
 private:
   enum class Depth : uint8_t { Own, First, Equal };
+  /// All that a pipeline is made of: a thread may make it.
+  struct Plan {
+    lacquer::vk::VertexInput input;
+    lacquer::DrawState state;
+    bool mirrored = false, colors = true, bias = false;
+    Depth mode = Depth::Own;
+    VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+  };
 
   // renderer.cpp: what stays
   void makeStage(Stage& stage, const lacquer::Scene& materials, const std::string& name);
@@ -75,8 +92,11 @@ private:
   bool lightView();
   View viewOf() const;
   void fillFrame(Stage& stage, const View& view, const Matrix& view_projection);
+  static lacquer::Drawn boundOf(const Stage& stage, const lacquer::Drawn& drawn);
   void fillMaterial(Stage& stage, const lacquer::Drawn& drawn);
   void fillObject(Item& item);
+  VkPipeline made(const Plan& plan) const;
+  void exchange(bool wait);
   VkPipeline pipelineOf(Stage& stage, const lacquer::Drawn& drawn, const Item& item, Depth mode);
   void drawItem(VkCommandBuffer commands, Stage& stage, const lacquer::Drawn& drawn, const Item& item,
                 Depth mode);
@@ -103,6 +123,7 @@ private:
   std::map<std::string, VkSampler> samplers_;
 
   float seconds_ = 0;
+  size_t fallbacks_ = 0;
   Moment moment_;
   std::vector<Item> items_;
   Item sky_item_;

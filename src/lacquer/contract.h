@@ -87,7 +87,8 @@ struct ContractUse {
   std::string structure;  ///< Graph::structure() of its graph, or of that of its program
   std::vector<UsedParameter> parameters;
   std::vector<std::pair<std::string, std::vector<double>>> uniforms;  ///< the Material block's fields by name
-  std::vector<std::byte> block;  ///< the Material block with them: Shader::uniformSize() bytes
+  /// The Material block with them: Shader::uniformSize() bytes, and no fewer than the fallback's.
+  std::vector<std::byte> block;
   std::vector<UsedTexture> textures;
   /// With Options::properties, of a material of the file: as Scene::properties() says them.
   std::vector<PropertyUse> properties;
@@ -95,6 +96,10 @@ struct ContractUse {
   /// Of such a shader: attributes that it reads and the primitive has not. Any finite constant will do.
   Strings stand_in_attributes;
   std::shared_ptr<const StructureFacts> facts;  ///< never null
+  /// With Options::fallback: what is drawn with until the pipeline of `shader` is there. Its block is the
+  /// beginning of `block`, and the textures of `shader` have the places that they have in it. One with the
+  /// same shader where no other material shares it. Else null.
+  std::shared_ptr<const ContractUse> fallback;
 };
 
 /// The numbers that Shader::pack() gives a use: those that `changed` sets, and the use's own.
@@ -194,6 +199,8 @@ struct Contract : FileContract {
   std::vector<ContractShader> shaders;  ///< each once, by id
   bool ok = true;                       ///< no material and no shader failed
 
+  /// What stands in for that until its pipeline is there (ContractUse::fallback); empty where nothing does.
+  Drawn fallback(const Drawn& drawn) const;
   /// What a material's use is drawn with; empty where there is none.
   Drawn drawn(int material, std::optional<size_t> use) const;
   /// The same of a primitive, with a variant (an index into `variants`) or without.

@@ -177,6 +177,10 @@ struct Options {
   /// At most so many programs for all materials of generate() and plan(), as far as they can share them
   /// (docs/builds.md); 0 for one for each structure. Not for Parameters::Baked.
   uint32_t programs = 0;
+  /// Beside each material's program another one for all, or a few where they cannot share one, with the same
+  /// bindings and block: what is drawn with until the material's own is compiled (docs/builds.md). Not beside
+  /// `programs`, nor of plan(), and for Parameters::Uniform alone.
+  bool fallback = false;
   std::string weights;          ///< a file: how much of the picture each material takes, for `programs`
   std::string programs_report;  ///< of generate(): a .json, .md or .svg file with what programs cost
   /// What programs, and the forms that `optimize` finds, cost by the model, which is the same on every

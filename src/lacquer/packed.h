@@ -17,7 +17,7 @@
 #include <stdint.h>
 
 #define LACQUER_PACKED_MAGIC 0x4d50514cu /* "LQPM" */
-#define LACQUER_PACKED_VERSION 2u
+#define LACQUER_PACKED_VERSION 3u
 #define LACQUER_PACKED_NONE 0xffffffffu /* no index */
 
 /* `count` elements from the byte `at` of the file on. The comment behind a list names its elements. */
@@ -60,12 +60,14 @@ typedef struct {
 } lacquer_packed_material;
 
 typedef struct {
-  uint32_t shader;                         /* index into the header's shaders */
-  lacquer_packed_list attributes;          /* lacquer_packed_text: the primitive's, beside POSITION */
-  lacquer_packed_list block;               /* the bytes of the shader's Material block, at a multiple of 16 */
+  uint32_t shader;                /* index into the header's shaders */
+  lacquer_packed_list attributes; /* lacquer_packed_text: the primitive's, beside POSITION */
+  /* The bytes of the shader's Material block, at a multiple of 16; with a fallback begun by its own. */
+  lacquer_packed_list block;
   lacquer_packed_list textures;            /* lacquer_packed_use_texture */
   lacquer_packed_list parameters;          /* lacquer_packed_parameter */
   lacquer_packed_list stand_in_attributes; /* lacquer_packed_text */
+  lacquer_packed_list fallback;            /* lacquer_packed_use: none or one, which has none */
 } lacquer_packed_use;
 
 typedef struct {

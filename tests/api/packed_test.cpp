@@ -51,6 +51,12 @@ void compareUses(const PackedFile& packed, const lacquer_packed_material& materi
       EXPECT_EQ(parameters[k].animated != 0, from.animated);
     }
     compareTextures(packed, uses[i], made.uses[i], shaders.at(uses[i].shader));
+    const auto fallbacks = packed.all<lacquer_packed_use>(uses[i].fallback);
+    ASSERT_EQ(fallbacks.size(), made.uses[i].fallback ? 1U : 0U);
+    if (fallbacks.empty()) continue;
+    EXPECT_EQ(fallbacks[0].shader, made.uses[i].fallback->shader);
+    EXPECT_EQ(fallbacks[0].block.count, made.uses[i].fallback->block.size());
+    compareTextures(packed, fallbacks[0], *made.uses[i].fallback, shaders.at(fallbacks[0].shader));
   }
 }
 
@@ -180,6 +186,12 @@ Options forPacking() {
 
 TEST(Packed, saysWhatTheContractSays) {
   for (const std::string& file : examples()) comparePacked(file, forPacking());
+}
+
+TEST(Packed, hasFallbacks) {
+  Options options = forPacking();
+  options.fallback = true;
+  for (const std::string& file : examples()) comparePacked(file, options);
 }
 
 TEST(Packed, saysItWhateverTheOptions) {

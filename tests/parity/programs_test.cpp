@@ -1,16 +1,20 @@
 // Several materials with one program: each has the colours of its own shader, within the bounds that hold for
 // that one.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
+#include "interface/interface.h"
 #include "parity/subject.h"
+#include "passes/pipeline.h"
 #include "programs/unite.h"
 #include "run/lift.h"
 #include "setting/language.h"
 #include "setting/options.h"
 #include "shader/module.h"
+#include "structures/structure.h"
 #include "support/cases.h"
 #include "support/materials.h"
 
@@ -47,6 +51,40 @@ void shareTextures(const Subject& own, const graph::Graph& united, const program
   }
 }
 
+/// A material's own program with the block and the places of the one that it shares: what that is exchanged
+/// for (--fallback).
+Subject laidOut(const Subject& own, const graph::Graph& graph, const MaterialSetting& setting,
+                const Subject& merged) {
+  Structure shared;
+  shared.reflection = reflect(merged.module, true, nullptr);
+  shared.preshader = Preshader(merged.module);
+  const passes::OtherLayout layout = layoutOf(shared);
+  Subject made = own;
+  made.name += ", laid out";
+  Result<ir::Module> module = lower::lower(graph, library(), {setting.parameters, true});
+  EXPECT_TRUE(module) << made.name;
+  if (!module) return made;
+  made.module = std::move(*module);
+  passes::PipelineOptions options{setting.lights, {}};
+  options.other = layout;
+  passes::runPipeline(made.module, options);
+  EXPECT_TRUE(eval::bindMaterialBlock(made.module, made.bindings)) << made.name;
+  // Whatever the fallback has there: it is not read.
+  for (uint32_t i = 0; i < layout.block / 16; ++i)
+    made.bindings.columns[fmt::format("material.fallback[{}]", i)] = eval::Column::constant({7, 8, 9, 10});
+  for (const ir::TextureSlot& slot : made.module.textures) {
+    const auto at = layout.textures.find(slot.name);
+    const bool same = at != layout.textures.end() && at->second.binding == slot.binding.binding &&
+                      at->second.flat == slot.binding.flat && at->second.set == slot.binding.set;
+    EXPECT_TRUE(same) << made.name << ": " << slot.name;
+  }
+  for (const ir::Block& block : made.module.blocks) {
+    if (block.role != ir::BlockRole::Material) continue;
+    EXPECT_GE(block.size, layout.block) << made.name;
+  }
+  return made;
+}
+
 struct Tried {
   Comparison comparison;
   size_t choices = 0;
@@ -73,6 +111,12 @@ Tried tryGroup(const std::vector<const NamedGraph*>& members, const MaterialSett
     compare(merged, bounds, onCpu(merged), "one program for several", tried.comparison);
     if (device && parity::device() != nullptr)
       compare(merged, bounds, onDevice(merged, FragmentRoute::Direct), "the same on a device",
+              tried.comparison);
+    if (m != 0 && !device) continue;
+    const Subject laid_out = laidOut(own, *graphs[m], setting, merged);
+    compare(laid_out, bounds, onCpu(laid_out), "its own in the shared one's layout", tried.comparison);
+    if (device && parity::device() != nullptr)
+      compare(laid_out, bounds, onDevice(laid_out, FragmentRoute::Direct), "the same on a device",
               tried.comparison);
   }
   EXPECT_EQ(tried.comparison.outside, 0U) << tried.comparison.first;

@@ -93,6 +93,17 @@ TEST_F(Pictures, SharedProgramsDrawTheSame) {
   EXPECT_LT(differing(own, shared, 0.002F), own.pixels.size() / 1000);
 }
 
+/// The first frame has the fallback's pipelines, the last the materials' own in their places: the same sets,
+/// the same vertex buffers.
+TEST_F(Pictures, FallbacksDrawTheSame) {
+  const Picture own = draw(kStillLife, with({}));
+  const Picture first = draw(kStillLife, with({"--fallback", "first"}));
+  const Picture last = draw(kStillLife, with({"--fallback", "last"}));
+  EXPECT_LT(differing(own, first, 0.002F), own.pixels.size() / 1000);
+  EXPECT_GT(differing(own, first, 0), 0U) << "no fallback was drawn with";
+  EXPECT_EQ(differing(own, last, 0), 0U);
+}
+
 TEST_F(Pictures, OtherTemplatesDraw) {
   const Picture ids = draw(kStillLife, with({"--template", "id"}));
   std::set<float> numbers;
@@ -279,6 +290,7 @@ TEST_F(Pictures, WrongWordsAreToldOf) {
   EXPECT_EQ(run({scene, "-o", "x.png", "--size", "0x9"}).status, 1);
   EXPECT_EQ(run({scene, "-o", "x.png", "--samples", "9"}).status, 1);
   EXPECT_EQ(run({scene, "-o", "x.png", "--unknown", "9"}).status, 1);
+  EXPECT_EQ(run({scene, "-o", "x.png", "--fallback", "9"}).status, 1);
   EXPECT_EQ(run({scene, "-o", "/nowhere/x.png", "--size", "16x16", "--cache", cacheFolder()}).status, 1);
   EXPECT_EQ(run({scene, "-o", "x.png", "--environment", "none.hdr", "--cache", cacheFolder()}).status, 1);
 }

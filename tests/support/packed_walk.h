@@ -99,12 +99,14 @@ private:
     });
     each<lacquer_packed_image>(of.images, [&](const auto& one) { text(one.uri), text(one.mime_type); });
   }
-  void use(const lacquer_packed_use& of) {
+  /// A fallback has none, but in what is damaged.
+  void use(const lacquer_packed_use& of, bool own = true) {
     texts(of.attributes), texts(of.stand_in_attributes);
     take(of_.bytes(of.block));
     each<lacquer_packed_use_texture>(of.textures, [&](const auto& one) { text(one.file); });
     each<lacquer_packed_parameter>(of.parameters,
                                    [&](const auto& one) { text(one.name), text(one.pointer); });
+    if (own) each<lacquer_packed_use>(of.fallback, [&](const auto& one) { use(one, false); });
   }
   void shader(const lacquer_packed_shader& of) {
     text(of.id), text(of.template_name), text(of.depth), texts(of.displaces);

@@ -57,6 +57,8 @@ export interface Options {
   /** What a MaterialX document includes, by its path as seen from the document. */
   document_texts?: Record<string, string>;
   limits?: string[];
+  /** Of contracts: beside each material's shader one for all, with the same bindings and block (docs/builds.md). */
+  fallback?: boolean;
   /** Of contracts: also materials that no primitive uses. */
   unused?: boolean;
   /** Of evaluations and previews: "SLOT=r,g,b,a", constants instead of images. */
@@ -317,6 +319,8 @@ export interface Use {
   uniforms: Record<string, number | number[]>;
   textures: Record<string, UsedTexture>;
   stand_in_attributes?: string[];
+  /** With `fallback`: what is drawn with until the pipeline of `shader` is there; the shader alone where that is the same one. */
+  fallback?: Pick<Use, 'shader'> & Partial<Pick<Use, 'parameters' | 'uniforms' | 'textures' | 'stand_in_attributes'>>;
   absent_parameters: Record<string, string[]>;
   unfilled_ports: string[];
 }

@@ -61,9 +61,13 @@ struct Merged {
 void addUses(const FileContract& file, const std::string& path, size_t index, Merged& merged) {
   const auto add = [&](const ContractMaterial& material, const std::string& pointer) {
     for (size_t i = 0; i < material.uses.size(); ++i) {
-      const std::string& id = material.uses[i].shader_id;
-      if (!merged.shaders.contains(id))
-        merged.uses.push_back({path, fmt::format("{}/uses/{}/shader", pointer, i), id});
+      const auto add_shader = [&](const ContractUse& use, std::string_view key) {
+        if (!merged.shaders.contains(use.shader_id))
+          merged.uses.push_back({path, fmt::format("{}/uses/{}/{}", pointer, i, key), use.shader_id});
+      };
+      const ContractUse& use = material.uses[i];
+      add_shader(use, "shader");
+      if (use.fallback) add_shader(*use.fallback, "fallback/shader");
     }
   };
   const std::string pointer = fmt::format("/files/{}", index);

@@ -99,9 +99,9 @@ Whole wholeOf(double number) {
                                        static_cast<double>(std::numeric_limits<Whole>::max())));
 }
 
-/// The Material block of a use: each number of a field where the reflection has it.
-std::vector<unsigned char> blockOf(const ContractUse& use, const UniformBlock& block) {
-  std::vector<unsigned char> bytes(block.size);
+/// Adds a use's numbers to its Material block, each of a field where the reflection has it.
+void addBlock(const ContractUse& use, const UniformBlock& block, std::vector<unsigned char>& bytes) {
+  bytes.resize(std::max<size_t>(bytes.size(), block.size));
   for (const auto& uniform : use.uniforms) {
     const auto field = std::find_if(block.fields.begin(), block.fields.end(),
                                     [&](const BlockField& one) { return one.name == uniform.first; });
@@ -119,7 +119,6 @@ std::vector<unsigned char> blockOf(const ContractUse& use, const UniformBlock& b
         as(static_cast<float>(numbers[i]));
     }
   }
-  return bytes;
 }
 
 class Packer {
@@ -206,10 +205,16 @@ lacquer_packed_use Packer::use(const ContractUse& from, int material) {
   to.parameters = each<lacquer_packed_parameter>(
       from.parameters, [&](const UsedParameter& one) { return parameter(one, material); });
   to.stand_in_attributes = bytes_.texts(from.stand_in_attributes);
-  if (shader == nullptr) return to;
-  for (const UniformBlock& one : shader->reflection->blocks) {
-    if (one.role == BlockRole::Material) to.block = bytes_.list(blockOf(from, one), kOfCode);
+  // One block for both: the fallback's fields come first.
+  std::vector<unsigned char> bytes;
+  for (const ContractUse* one : {from.fallback.get(), &from}) {
+    if (one == nullptr || one->shader >= shaders_.size()) continue;
+    for (const UniformBlock& block : shaders_[one->shader].reflection->blocks) {
+      if (block.role == BlockRole::Material) addBlock(*one, block, bytes);
+    }
   }
+  if (!bytes.empty()) to.block = bytes_.list(bytes, kOfCode);
+  if (from.fallback) to.fallback = bytes_.list(std::vector{use(*from.fallback, material)});
   return to;
 }
 

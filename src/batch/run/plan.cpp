@@ -281,6 +281,11 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     return run.finish();
   }
   const std::string all_materials = materialsOf(plan);
+  if (options.fallback) {
+    run.wrote(fail("fallback-plan", {}, "a plan has no fallback: its shaders would not know one another",
+                   "leave --fallback out, or make them with `gen`"));
+    return run.finish();
+  }
   if (!run.open(folderBeside(plan))) return run.finish();
   if (const Diagnostics wrong = unfit(plan, folder, run.inputs()); !wrong.empty()) {
     run.wrote(tl::make_unexpected(wrong));

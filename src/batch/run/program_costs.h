@@ -26,6 +26,8 @@ public:
 
   /// What the structures of these programs have together.
   Lift liftOf(const programs::Places& group) const;
+  /// The program of a group; errors where it cannot be.
+  Result<ir::Module> moduleOfGroup(const programs::Places& group) const;
   /// Measures groups for the search: by the driver where there are few programs in all. Of groups of many
   /// structures, terms and choices are added up in place of a shader. Items alone come first. Uses threads.
   std::vector<std::optional<programs::Program>> measure(const std::vector<programs::Places>& groups);
@@ -37,7 +39,6 @@ public:
   const std::string& driver() const { return driver_; }
 
 private:
-  Result<ir::Module> moduleOfGroup(const programs::Places& group) const;
   std::optional<double> told(const std::optional<Key>& key);
   std::vector<std::optional<double>> cyclesOf(const std::vector<Result<ir::Module>>& modules);
   programs::Program byModel(const ir::Module& module);

@@ -54,16 +54,7 @@ std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structu
 /// beside its material, such as a skin.
 using Domain = std::pair<std::map<std::string, int>, std::vector<std::string>>;
 
-std::map<std::string, int> lightsOfProgram(const OwnProgram& program) {
-  const passes::LightFacts& lights = program.structures[0]->lights;
-  std::map<std::string, int> counts(lights.counts.begin(), lights.counts.end());
-  counts[""] = lights.any ? 1 : 0;
-  return counts;
-}
-
-Domain domainOf(const OwnProgram& program) {
-  return {lightsOfProgram(program), program.graphs[0].attributes};
-}
+Domain domainOf(const OwnProgram& program) { return {lightsOf(program), program.graphs[0].attributes}; }
 
 std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
                           ProgramCosts& costs) {
@@ -137,12 +128,36 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
   std::set<std::map<std::string, int>> lights;
   std::set<std::vector<std::string>> vertices;
   for (const OwnProgram& one : all) {
-    lights.insert(lightsOfProgram(one));
+    lights.insert(lightsOf(one));
     vertices.insert(one.graphs[0].attributes);
   }
   light_sets_ = lights.size();
   vertex_sets_ = vertices.size();
-  ProgramCosts costs(setting, all, options.programs_model);
+  ProgramCosts costs(setting, all, options.programs_model || options.fallback);
+  if (!options.fallback) {
+    divide(all, uses, materials, costs);
+    return;
+  }
+  fallbacks_ = fallbacksOf(all, costs, setting);
+  share(all, fallbacks_.groups, costs);
+}
+
+void Programs::share(const std::vector<OwnProgram>& all, const std::vector<Places>& groups,
+                     const ProgramCosts& costs) {
+  for (const Places& places : groups) {
+    if (places.size() == 1) continue;
+    const auto group = std::make_shared<Group>();
+    group->lift = costs.liftOf(places);
+    for (const uint32_t item : places) {
+      for (const Structure* structure : all[item].structures)
+        members_[structure->key] = {group, structure->looks_through};
+    }
+  }
+}
+
+void Programs::divide(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
+                      size_t materials, ProgramCosts& costs) {
+  const Options& options = setting_.options;
   const std::vector<Item> items = itemsOf(all, uses, costs);
   const bool report = !options.programs_report.empty();
   const size_t wanted = options.programs == 0 ? items.size() : options.programs;
@@ -152,15 +167,7 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
   const auto made = std::find_if(divisions.begin(), divisions.end(),
                                  [&](const programs::Division& one) { return one.groups.size() <= wanted; });
   const programs::Division& division = made == divisions.end() ? divisions.back() : *made;
-  for (const Places& places : division.groups) {
-    if (places.size() == 1) continue;
-    const auto group = std::make_shared<Group>();
-    group->lift = costs.liftOf(places);
-    for (const uint32_t item : places) {
-      for (const Structure* structure : all[item].structures)
-        members_[structure->key] = {group, structure->looks_through};
-    }
-  }
+  share(all, division.groups, costs);
   curve_.materials = materials;
   curve_.structures = items.size();
   curve_.made = division.groups.size();
@@ -174,6 +181,8 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
   curve_.error = errorOf(items, merging, costs);
   for (programs::Point& point : curve_.points) point.cost *= curve_.error.scale;
 }
+
+bool Programs::beside() const { return setting_.options.fallback; }
 
 Sharing::Share Programs::bring(Traced& own, const material::Material* material,
                                const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) {
@@ -209,6 +218,7 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
 }
 
 Diagnostics Programs::about(size_t made) const {
+  if (setting_.options.fallback) return lacquer::about(fallbacks_);
   const size_t wanted = setting_.options.programs;
   if (wanted == 0 || made <= wanted) return {};
   std::string help = fmt::format("the others cannot be made one: give --programs {}", made);
@@ -233,6 +243,7 @@ Diagnostics Programs::about(size_t made) const {
 
 void Programs::close() {
   KeyBuilder digest;
+  if (setting_.options.fallback) digest.text("fallback");
   std::set<Group*> done;
   for (const auto& [structure, member] : members_) {
     const std::shared_ptr<Group>& group = member.group;
@@ -270,7 +281,7 @@ std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures
   setting.sharing = programs.get();
   structures.forgetShapes();
   Uses again;
-  if (setting.options.programs > 0) look(again);
+  if (setting.options.programs > 0 || setting.options.fallback) look(again);
   programs->close();
   structures.lookAgain();
   return programs;
@@ -284,6 +295,22 @@ Diagnostics wrongOfPrograms(const Options& options) {
              {},
              "materials whose numbers are constants in the code cannot share it",
              "leave `baked` out, or --programs and --programs-report",
+             {}}};
+  }
+  if (asked && options.fallback) {
+    return {{"fallback-programs",
+             Severity::Error,
+             {},
+             "a fallback stands beside the programs of the materials, not beside those that they share",
+             "leave --fallback out, or --programs and --programs-report",
+             {}}};
+  }
+  if (options.fallback && options.parameters != Parameters::Uniform) {
+    return {{"fallback-parameters",
+             Severity::Error,
+             {},
+             "a fallback has the numbers of every material in its block, not in its code",
+             "leave --fallback out, or `baked` and `spec`",
              {}}};
   }
   const std::string& report = options.programs_report;

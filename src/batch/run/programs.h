@@ -8,7 +8,9 @@
 #include "programs/curve.h"
 #include "programs/unite.h"
 #include "programs/weights.h"
+#include "run/fallbacks.h"
 #include "run/lift.h"
+#include "run/program_costs.h"
 #include "structures/structures.h"
 
 namespace lacquer {
@@ -54,12 +56,17 @@ public:
   /// Unites what was looked at. Not beside bring().
   void close();
 
+  bool beside() const override;
   bool closed() const override { return closed_; }
   const Key& digest() const override { return digest_; }
   const programs::Curve& curve() const { return curve_; }
   Diagnostics about(size_t made) const override;
 
 private:
+  void share(const std::vector<OwnProgram>& all, const std::vector<programs::Places>& groups,
+             const ProgramCosts& costs);
+  void divide(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses, size_t materials,
+              ProgramCosts& costs);
   /// Structures that share a program.
   struct Group {
     Lift lift;
@@ -79,9 +86,11 @@ private:
   programs::Curve curve_;
   /// Different known lights, and vertex stages: materials share programs only within one of each.
   size_t light_sets_ = 0, vertex_sets_ = 0;
+  Fallbacks fallbacks_;
 };
 
-/// What is wrong with the options that ask for programs: "programs-baked", "report-format".
+/// What is wrong with the options that ask for programs: "programs-baked", "report-format",
+/// "fallback-parameters", "fallback-programs".
 Diagnostics wrongOfPrograms(const Options& options);
 /// Of the options' file; every material counts the same where they name none.
 Result<programs::Weights> weightsOf(const Options& options, const Limits& limits);

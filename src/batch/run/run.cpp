@@ -181,7 +181,8 @@ void Run::readAll(const std::vector<std::string>& files, const std::function<Fil
 
 void Run::read(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
                const std::function<void(FileResult&)>& each) {
-  if (options_.programs > 0 || !options_.programs_report.empty()) mergePrograms(files, kind, only);
+  if (options_.programs > 0 || options_.fallback || !options_.programs_report.empty())
+    mergePrograms(files, kind, only);
   std::vector<std::string> seen;
   const bool in_memory = !read_.empty();
   readAll(

@@ -60,6 +60,7 @@ constexpr uint64_t kCachePart = 8;
 /// What a use of a material says of its pipelines.
 struct PipelineUse {
   const Structure* structure = nullptr;
+  const Structure* fallback = nullptr;  ///< null where there is none beside it
   std::vector<UsedParameter>
       parameters;  ///< where there are specialization constants and pipelines are asked for
 };
@@ -91,6 +92,7 @@ Done textOf(const Wanted& wanted, const std::string& file, const Setting& settin
   for (size_t i = 0; i < described.met.size(); ++i) {
     PipelineUse& use = done.pipelines.emplace_back();
     use.structure = described.met[i];
+    use.fallback = described.fallbacks[i];
     if (listed && use.structure->reflection.has_spec_constants)
       use.parameters = std::move(described.values.uses[i].parameters);
   }
@@ -165,9 +167,11 @@ private:
 
   void add(const DrawState& state, const PipelineUse& use, const std::vector<StoredAttribute>* attributes,
            const Pipeline& first) {
-    const Structure& structure = *use.structure;
-    all_.add(state, structure.shader, use.parameters, structure.reflection, structure.has_vertex, attributes,
-             first);
+    // What is drawn with first comes first.
+    for (const Structure* one : {use.fallback, use.structure}) {
+      if (one == nullptr) continue;
+      all_.add(state, one->shader, use.parameters, one->reflection, one->has_vertex, attributes, first);
+    }
   }
 
   void primitiveOf(const ContractPrimitive& primitive, int material, std::optional<size_t> use) {
@@ -472,8 +476,11 @@ FileResult makeGraph(const Input& input, const std::vector<std::string>& only, c
     first.material = 0;
     Pipelines pipelines;
     for (const PipelineUse& use : done.pipelines) {
-      pipelines.add(done.state, use.structure->shader, use.parameters, use.structure->reflection,
-                    use.structure->has_vertex, nullptr, first);
+      for (const Structure* one : {use.fallback, use.structure}) {
+        if (one == nullptr) continue;
+        pipelines.add(done.state, one->shader, use.parameters, one->reflection, one->has_vertex, nullptr,
+                      first);
+      }
     }
     result.pipelines = pipelines.all();
     result.materials.push_back(std::move(done.report));

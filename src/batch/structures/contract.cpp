@@ -22,7 +22,14 @@ using Places = std::map<std::string, size_t>;
 ContractMaterial valuesOf(Described& described, const std::string& file, const Places& places) {
   ContractMaterial values = std::move(described.values);
   report(described.diagnostics, file, values.messages);
-  for (size_t i = 0; i < values.uses.size(); ++i) values.uses[i].shader = places.at(described.shaders[i]);
+  for (size_t i = 0; i < values.uses.size(); ++i) {
+    ContractUse& use = values.uses[i];
+    use.shader = places.at(described.shaders[i]);
+    if (!use.fallback) continue;
+    auto fallback = std::make_shared<ContractUse>(*use.fallback);
+    fallback->shader = places.at(fallback->shader_id);
+    use.fallback = std::move(fallback);
+  }
   return values;
 }
 

@@ -48,8 +48,13 @@ private:
   bool known(const std::string& key, const gltf::VertexAttributes& attributes);
   void use(Traced graph, const gltf::VertexAttributes& attributes, const Diagnostics& said,
            const std::string& key);
+  std::shared_ptr<const KnownShape> fallbackOf(Traced common, const graph::Graph& own,
+                                               const gltf::VertexAttributes& attributes);
+  void addFallback(const KnownShape* fallback, const Filling* filling,
+                   const gltf::VertexAttributes& attributes, ContractUse& use);
   bool check(const Structure& structure, const Filling& filling, graph::Graph& graph);
-  bool accept(const Structure& structure, const Filling& filling, const Sharing::Share& share,
+  /// `fallback`: with its own filling, and null where there is none.
+  bool accept(const KnownShape& shape, const Filling& filling, const Filling* fallback,
               const gltf::VertexAttributes& attributes);
   std::shared_ptr<const MaterialTerms> terms() const;
 
@@ -129,33 +134,68 @@ bool Describer::known(const std::string& key, const gltf::VertexAttributes& attr
   if (shape == nullptr) return false;
   const Filling filling = structures_.shapes()->fill(*shape, material_);
   if (!withinLimits(*shape->structure, filling)) return false;
+  std::optional<Filling> fallback;
+  if (shape->fallback) fallback = structures_.shapes()->fill(*shape->fallback, material_);
+  if (fallback && !withinLimits(*shape->fallback->structure, *fallback)) return false;
   if (setting_.sharing != nullptr) setting_.sharing->note(shape->structure->key, material_, attributes);
   met_.push_back(shape->structure);
-  accept(*shape->structure, filling, shape->share, attributes);
+  accept(*shape, filling, fallback ? &*fallback : nullptr, attributes);
   return true;
+}
+
+/// What the options want beside a material's own program: `common` is its graph, which becomes that of the
+/// fallback. Null where it has no part in one.
+std::shared_ptr<const KnownShape> Describer::fallbackOf(Traced common, const graph::Graph& own,
+                                                        const gltf::VertexAttributes& attributes) {
+  const Sharing::Share share = setting_.sharing->bring(common, wanted_.material, attributes, lights_);
+  if (share.fill == nullptr) return nullptr;
+  // One texture for both: what another layer has made of a name would not do.
+  for (const graph::Texture& texture : own.textures) {
+    const std::optional<size_t> at = common.graph.findTexture(texture.name);
+    const graph::Texture* const other = at ? &common.graph.textures[*at] : nullptr;
+    if (other != nullptr && (other->pointer != texture.pointer || other->texture != texture.texture ||
+                             other->srgb != texture.srgb || other->file != texture.file))
+      return nullptr;
+  }
+  const Structure& structure = structures_.of(common.graph, lights_);
+  Filling filling = fillingOf(common.graph, material_);
+  if (structure.shader.empty() || !withinLimits(structure, filling)) return nullptr;
+  return std::make_shared<KnownShape>(KnownShape{&structure, share, std::move(filling),
+                                                 std::move(common.numbers), std::move(common.textures)});
 }
 
 /// `said`: what building the graph has reported. `key`: of the material's shape; empty where shapes are not
 /// kept.
 void Describer::use(Traced own, const gltf::VertexAttributes& attributes, const Diagnostics& said,
                     const std::string& key) {
-  Sharing::Share share;
+  KnownShape shape;
+  graph::Graph common;  // what the fallback's filling points into
   if (setting_.sharing != nullptr) {
     const Key structure = structureKey(own.graph, lights_, setting_);
     if (wanted_.material != nullptr)
       setting_.sharing->note(structure, material_, attributes);
     else
       setting_.sharing->note(structure, own.graph);
-    share = setting_.sharing->bring(own, wanted_.material, attributes, lights_);
+    if (setting_.sharing->beside()) {
+      common = own.graph;
+      shape.fallback = fallbackOf({common, own.numbers, own.textures}, own.graph, attributes);
+    } else {
+      shape.share = setting_.sharing->bring(own, wanted_.material, attributes, lights_);
+    }
   }
-  const Structure& structure = structures_.of(own.graph, lights_);
+  const Structure& structure = structures_.of(
+      own.graph, lights_, shape.fallback ? layoutOf(*shape.fallback->structure) : passes::OtherLayout());
   Filling filling = fillingOf(own.graph, material_);
   met_.push_back(&structure);
   add(said);
-  const bool good = check(structure, filling, own.graph) && accept(structure, filling, share, attributes);
-  if (good && said.empty() && !key.empty() && withinLimits(structure, filling))
-    structures_.shapes()->keep(
-        key, {&structure, share, std::move(filling), std::move(own.numbers), std::move(own.textures)});
+  shape.structure = &structure;
+  const bool good = check(structure, filling, own.graph) &&
+                    accept(shape, filling, shape.fallback ? &shape.fallback->filling : nullptr, attributes);
+  if (!good || !said.empty() || key.empty() || !withinLimits(structure, filling)) return;
+  shape.filling = std::move(filling);
+  shape.numbers = std::move(own.numbers);
+  shape.textures = std::move(own.textures);
+  structures_.shapes()->keep(key, std::move(shape));
 }
 
 /// False, with errors, for a graph that is wrong.
@@ -166,8 +206,26 @@ bool Describer::check(const Structure& structure, const Filling& filling, graph:
   return !hasError(found);
 }
 
-bool Describer::accept(const Structure& structure, const Filling& filling, const Sharing::Share& share,
+void Describer::addFallback(const KnownShape* fallback, const Filling* filling,
+                            const gltf::VertexAttributes& attributes, ContractUse& use) {
+  made_.fallbacks.push_back(fallback == nullptr ? nullptr : fallback->structure);
+  if (setting_.sharing == nullptr || !setting_.sharing->beside()) return;
+  if (fallback == nullptr) {
+    use.fallback = std::make_shared<ContractUse>(use);
+    return;
+  }
+  auto made = std::make_shared<ContractUse>(useOf(*fallback->structure, *filling, fallback->share.fill));
+  made->attributes = use.attributes;
+  made->stand_in_attributes = standIns(*fallback->structure, attributes);
+  if (use.block.size() < made->block.size()) use.block.resize(made->block.size());
+  std::copy(made->block.begin(), made->block.end(), use.block.begin());
+  use.fallback = std::move(made);
+}
+
+bool Describer::accept(const KnownShape& shape, const Filling& filling, const Filling* fallback,
                        const gltf::VertexAttributes& attributes) {
+  const Structure& structure = *shape.structure;
+  const Sharing::Share& share = shape.share;
   add(structure.diagnostics);
   if (structure.shader.empty()) return false;
   if (setting_.options.parameters != Parameters::Uniform) add(animated(structure, filling));
@@ -179,6 +237,7 @@ bool Describer::accept(const Structure& structure, const Filling& filling, const
     if (const Result<const material::Schema*> schema = setting_.library.models.schema(); schema)
       use.properties = propertiesOf(use, material_, **schema);
   }
+  addFallback(shape.fallback.get(), fallback, attributes, use);
   made_.values.uses.push_back(std::move(use));
   made_.shaders.push_back(structure.shader);
   made_.met.push_back(&structure);
@@ -223,9 +282,12 @@ Described Describer::finish() {
   add(of_uses);
   made_.diagnostics = std::move(diagnostics_);
   made_.ok = !hasError(made_.diagnostics);
-  for (const Structure* structure : met_) {
-    if (std::find(made_.structures.begin(), made_.structures.end(), structure->key) == made_.structures.end())
-      made_.structures.push_back(structure->key);
+  for (const auto* all : {&met_, &made_.fallbacks}) {
+    for (const Structure* structure : *all) {
+      const auto known = std::find_if(made_.structures.begin(), made_.structures.end(),
+                                      [&](const Key& key) { return structure && structure->key == key; });
+      if (structure != nullptr && known == made_.structures.end()) made_.structures.push_back(structure->key);
+    }
   }
   ContractMaterial& values = made_.values;
   values.index = wanted_.index;

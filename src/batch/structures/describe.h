@@ -30,8 +30,9 @@ struct Described {
   ContractMaterial values;                   ///< the uses' `shader` is 0
   std::vector<std::string> shaders;          ///< ids, by use
   std::vector<const Structure*> met;         ///< by use
+  std::vector<const Structure*> fallbacks;   ///< by use; null where there is none beside its own
   std::vector<gltf::VertexAttributes> uses;  ///< the attributes of each
-  std::vector<Key> structures;               ///< distinct, those of failed uses among them
+  std::vector<Key> structures;               ///< distinct, those of failed uses and fallbacks among them
   Diagnostics diagnostics;
   bool ok = true;
 };

@@ -21,6 +21,7 @@ struct KnownShape {
   /// Where another has its numbers from; none for those that are not the material's.
   std::vector<std::optional<model::Origin>> numbers;
   std::vector<std::optional<uint16_t>> textures;  ///< likewise: properties
+  std::shared_ptr<const KnownShape> fallback{};   ///< what stands beside it; null where nothing does
 };
 
 /// May be used from several threads at once.

@@ -174,7 +174,7 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Setting
 }
 
 Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts& lights,
-                            const Setting& setting) {
+                            const passes::OtherLayout& other, const Setting& setting) {
   Result<ir::Module> module;
   {
     const StageTimer timer(setting.times, StageOfRun::Lower);
@@ -182,9 +182,12 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
   }
   if (!module) return module;
   const StageTimer timer(setting.times, StageOfRun::Passes);
-  return throughPasses(
-      std::move(*module),
-      {lights, {}, setting.options.relaxed, optimization(setting.options), cost::chooserOf(setting.options)});
+  return throughPasses(std::move(*module), {lights,
+                                            {},
+                                            setting.options.relaxed,
+                                            optimization(setting.options),
+                                            cost::chooserOf(setting.options),
+                                            other});
 }
 
 }  // namespace
@@ -201,12 +204,25 @@ static void addSetting(const passes::LightFacts& lights, const Setting& setting,
   for (const Target target : setting.options.targets) key.number(target);
 }
 
-Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
+Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting,
+                 const passes::OtherLayout& other) {
   KeyBuilder key;  // none that a thread keeps: the C library ends the process where it has no memory to note
                    // its destructor
   addSetting(lights, setting, key.text("structure"));
   StructureKey(key, setting.options.parameters == Parameters::Baked).graph(graph);
+  if (!other.empty()) key.number(other.block);
+  for (const auto& [name, at] : other.textures)
+    key.text(name).number(at.set).number(at.binding).number(at.flat);
   return setting.keys->of(key.take());
+}
+
+passes::OtherLayout layoutOf(const Structure& structure) {
+  passes::OtherLayout layout{structure.preshader.blockSize(), {}};
+  for (const ReflectedTexture& texture : structure.reflection.textures) {
+    const std::string& name = texture.role == TextureRole::Material ? texture.slot : texture.name;
+    layout.textures[name] = {texture.at.set, texture.at.binding, texture.at.flat};
+  }
+  return layout;
 }
 
 Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
@@ -219,9 +235,11 @@ Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, cons
 }
 
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
-                                        const Setting& setting, Structure& structure) {
+                                        const passes::OtherLayout& other, const Setting& setting,
+                                        Structure& structure) {
   structure.numbers = numbersOf(graph, setting.library);
   structure.lights = lights;
+  structure.other = other;
   const bool baked = setting.options.parameters == Parameters::Baked;
   graph::Graph plain = withoutMaterial(graph, structure.numbers, baked);
   {
@@ -232,7 +250,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   structure.facts = std::make_shared<StructureFacts>(factsOf(plain, setting));
   if (hasError(structure.diagnostics)) return std::nullopt;
   structure.program = programKey(plain, lights, setting);
-  Result<ir::Module> module = modulate(plain, lights, setting);
+  Result<ir::Module> module = modulate(plain, lights, other, setting);
   if (!module) {
     structure.diagnostics.insert(structure.diagnostics.end(), module.error().begin(), module.error().end());
     return std::nullopt;
@@ -259,7 +277,7 @@ Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) 
       hasError(found)) {
     return tl::make_unexpected(found);
   }
-  return modulate(*graph, structure.lights, setting);
+  return modulate(*graph, structure.lights, structure.other, setting);
 }
 
 Filling fillingOf(const graph::Graph& graph, const material::Material& material) {
@@ -341,12 +359,20 @@ template <class Archive>
 static void fields(Archive& archive, Range& range) {
   archive(range.lo, range.hi, range.gap);
 }
+template <class Archive>
+static void fields(Archive& archive, Binding& at) {
+  archive(at.set, at.binding, at.flat);
+}
 }  // namespace ir
 
 namespace passes {
 template <class Archive>
 static void fields(Archive& archive, LightFacts& lights) {
   archive(lights.any, lights.counts);
+}
+template <class Archive>
+static void fields(Archive& archive, OtherLayout& other) {
+  archive(other.block, other.textures);
 }
 }  // namespace passes
 
@@ -363,7 +389,8 @@ static void fields(Archive& archive, Structure::Number& number) {
 template <class Archive>
 static void fields(Archive& archive, Structure& s) {
   archive(s.content, s.program, s.module, s.diagnostics, s.shader, s.has_vertex, s.looks_through, s.facts,
-          s.reflection, s.terms, s.preshader, s.parameters, s.textures, s.numbers, s.graph, s.lights);
+          s.reflection, s.terms, s.preshader, s.parameters, s.textures, s.numbers, s.graph, s.lights,
+          s.other);
 }
 
 std::string toBlob(const Structure& structure) {

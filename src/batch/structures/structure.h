@@ -50,6 +50,7 @@ struct Structure {
   std::vector<Number> numbers;
   std::string graph;  ///< JSON form of the graph without what belongs to one material
   passes::LightFacts lights;
+  passes::OtherLayout other;  ///< of the program that its shader takes the place of
 };
 
 /// A material's graph, and where its numbers and textures come from: none for what is not the material's.
@@ -76,6 +77,8 @@ public:
   virtual void note(const Key& structure, const graph::Graph& graph) = 0;
   /// Puts the graph of a material's program in place of its own. `material`: that the graph was built of;
   /// null for a graph that is the input.
+  /// That program stands beside each material's own, until that is there.
+  virtual bool beside() const { return false; }
   virtual Share bring(Traced& own, const material::Material* material,
                       const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) = 0;
   /// Results are of use to another run.
@@ -103,7 +106,11 @@ struct Setting {
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,
 /// where the numbers stay editable, the parameters' values. Of its content there is one in Setting::keys.
-Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting);
+/// `other`: the layout of a program in whose place its shader is drawn with.
+Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting,
+                 const passes::OtherLayout& other = {});
+/// That of a structure's shader.
+passes::OtherLayout layoutOf(const Structure& structure);
 
 /// Graph::structure() of a flat, checked graph: of what the shader is made of and of nothing else, so that
 /// graphs have one whose ids and orders differ.
@@ -112,7 +119,8 @@ Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, cons
 /// The graph, its numbers replaced by others that the check accepts, lowered and through the passes. On an
 /// error, the reasons are in `structure.diagnostics`.
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
-                                        const Setting& setting, Structure& structure);
+                                        const passes::OtherLayout& other, const Setting& setting,
+                                        Structure& structure);
 
 /// The graph without what belongs to one material: numbers that stay editable have values that the check
 /// accepts.

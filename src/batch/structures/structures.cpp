@@ -49,14 +49,15 @@ Diagnostic sameId(const std::string& id) {
 
 }  // namespace
 
-const Structure& Structures::of(const graph::Graph& graph, const passes::LightFacts& lights) {
-  const Key key = structureKey(graph, lights, setting_);
+const Structure& Structures::of(const graph::Graph& graph, const passes::LightFacts& lights,
+                                const passes::OtherLayout& other) {
+  const Key key = structureKey(graph, lights, setting_, other);
   Entry& entry = entryOf(key);
   const std::lock_guard lock(entry.mutex);
   if ((entry.ready || load(key, entry)) && fits(entry.structure, graph)) return met(entry.structure);
   entry.structure = {};
   entry.structure.key = key;
-  std::optional<ir::Module> module = makeStructure(graph, lights, setting_, entry.structure);
+  std::optional<ir::Module> module = makeStructure(graph, lights, other, setting_, entry.structure);
   entry.ready = true;
   if (module && setting_.cache != nullptr) {
     const StageTimer timer(setting_.times, StageOfRun::Cache);

@@ -25,8 +25,9 @@ class Structures {
 public:
   explicit Structures(const Setting& setting) : setting_(setting) { forgetShapes(); }
 
-  /// The structure of a graph, found or made. It lives as long as this object.
-  const Structure& of(const graph::Graph& graph, const passes::LightFacts& lights);
+  /// The structure of a graph, found or made. It lives as long as this object. `other`: as of structureKey().
+  const Structure& of(const graph::Graph& graph, const passes::LightFacts& lights,
+                      const passes::OtherLayout& other = {});
   /// A structure that this run has met or that the cache holds; null when there is none.
   const Structure* known(const Key& key);
   /// What was met so far was to look at: its shaders need not be made unless they are met again. Not beside

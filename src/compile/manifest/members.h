@@ -196,14 +196,9 @@ void members(A& a, Of<A, PropertyUse>& of) {
   a.some("live", of.live);
 }
 
+/// What a use and its fallback say of their shaders.
 template <class A>
-void members(A& a, Of<A, ContractUse>& of) {
-  a.is("the use");
-  Strings attributes;
-  if constexpr (!A::kReads) attributes = fromPublic(of.attributes).names();
-  a("attributes", attributes);
-  if constexpr (A::kReads) of.attributes = attributesOf(attributes);
-  a("shader", of.shader_id);
+void filled(A& a, Of<A, ContractUse>& of) {
   a("parameters", of.parameters);
   a("uniforms", of.uniforms);
   a("textures", of.textures);
@@ -215,10 +210,54 @@ void members(A& a, Of<A, ContractUse>& of) {
     of.shares_program = stand_ins.has_value();
     if (stand_ins) of.stand_in_attributes = std::move(*stand_ins);
   }
+}
+
+/// Of one whose shader is the use's own there is nothing but its name.
+struct Fallback {
+  std::shared_ptr<const ContractUse> use;
+  bool own = false;
+};
+template <class A>
+void members(A& a, Of<A, Fallback>& of) {
+  a.is("the fallback");
+  if constexpr (A::kReads) of.own = !a.has("uniforms");
+  shared(a, of.use, [&](auto& use) {
+    a("shader", use.shader_id);
+    if (!of.own) filled(a, use);
+  });
+}
+
+/// Of a use that was read.
+inline std::shared_ptr<const ContractUse> fallbackOf(const ContractUse& use, const Fallback& read) {
+  auto made = std::make_shared<ContractUse>(use);
+  if (read.own) return made;
+  *made = *read.use;
+  made->attributes = use.attributes;
+  made->facts = use.facts;
+  return made;
+}
+
+template <class A>
+void members(A& a, Of<A, ContractUse>& of) {
+  a.is("the use");
+  Strings attributes;
+  if constexpr (!A::kReads) attributes = fromPublic(of.attributes).names();
+  a("attributes", attributes);
+  if constexpr (A::kReads) of.attributes = attributesOf(attributes);
+  a("shader", of.shader_id);
+  filled(a, of);
+  std::optional<Fallback> fallback;
+  if constexpr (!A::kReads) {
+    if (of.fallback) fallback = Fallback{of.fallback, of.fallback->shader_id == of.shader_id};
+  }
+  a.some("fallback", fallback);
   shared(a, of.facts, [&](auto& facts) {
     a("absent_parameters", facts.absent_parameters);
     a("unfilled_ports", facts.unfilled_ports);
   });
+  if constexpr (A::kReads) {
+    if (fallback) of.fallback = fallbackOf(of, *fallback);
+  }
 }
 
 template <class A>

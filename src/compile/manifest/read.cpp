@@ -317,15 +317,22 @@ private:
   /// What follows from the shader that a use names.
   void resolve(ContractMaterial& material, const std::vector<ManifestShader>& shaders) const {
     for (ContractUse& use : material.uses) {
-      const auto it = places_.find(use.shader_id);
-      use.shader = it == places_.end() ? shaders.size() : it->second;
-      if (it == places_.end()) continue;
-      const Reflection& reflection = shaders[use.shader].reflection;
-      for (UsedTexture& texture : use.textures) {
-        const auto slot = std::find_if(reflection.textures.begin(), reflection.textures.end(),
-                                       [&](const ReflectedTexture& one) { return one.name == texture.slot; });
-        if (slot != reflection.textures.end()) texture.srgb = slot->srgb;
-      }
+      resolve(use, shaders);
+      if (!use.fallback) continue;
+      auto fallback = std::make_shared<ContractUse>(*use.fallback);
+      resolve(*fallback, shaders);
+      use.fallback = std::move(fallback);
+    }
+  }
+  void resolve(ContractUse& use, const std::vector<ManifestShader>& shaders) const {
+    const auto it = places_.find(use.shader_id);
+    use.shader = it == places_.end() ? shaders.size() : it->second;
+    if (it == places_.end()) return;
+    const Reflection& reflection = shaders[use.shader].reflection;
+    for (UsedTexture& texture : use.textures) {
+      const auto slot = std::find_if(reflection.textures.begin(), reflection.textures.end(),
+                                     [&](const ReflectedTexture& one) { return one.name == texture.slot; });
+      if (slot != reflection.textures.end()) texture.srgb = slot->srgb;
     }
   }
 

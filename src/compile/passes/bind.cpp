@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "ir/module.h"
@@ -7,8 +8,10 @@
 
 namespace lacquer::passes {
 
-void bind(ir::Module& module) {
+void bind(ir::Module& module, const OtherLayout& other) {
+  module.beside_another = !other.empty();
   std::vector<bool> used(module.textures.size(), false);
+  std::vector<const ir::Binding*> given(module.textures.size(), nullptr);
   std::vector<ir::ValueId> texture_inputs;
   for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
     if (module.dag[id].op != ir::Op::Input) continue;
@@ -16,15 +19,22 @@ void bind(ir::Module& module) {
     if (input.kind != ir::InputKind::Texture) continue;
     used[input.field] = true;
     texture_inputs.push_back(id);
+    if (const auto it = other.textures.find(input.name); it != other.textures.end())
+      given[input.field] = &it->second;
   }
   std::vector<ir::TextureSlot> kept;
   std::vector<uint32_t> place(module.textures.size(), 0);
   uint32_t next = 0;
+  for (const auto& [name, at] : other.textures) {
+    if (at.flat >= module.material_textures) next = std::max(next, at.flat - module.material_textures + 1);
+  }
   for (size_t i = 0; i < module.textures.size(); ++i) {
     ir::TextureSlot& slot = module.textures[i];
     if (!used[i]) continue;
     // A template's textures have their places, used or not; a material's follow its block in set 1.
-    if (!slot.environment) {
+    if (given[i] != nullptr) {
+      slot.binding = *given[i];
+    } else if (!slot.environment) {
       slot.binding = {ir::kMaterialBinding.set, ir::kMaterialBinding.binding + 1 + next,
                       module.material_textures + next};
       ++next;
@@ -32,8 +42,10 @@ void bind(ir::Module& module) {
     place[i] = static_cast<uint32_t>(kept.size());
     kept.push_back(slot);
   }
-  for (ir::TextureSlot& slot : kept) {
-    if (slot.optional) slot.binding.flat = module.material_textures + next++;
+  for (size_t i = 0; i < used.size(); ++i) {
+    ir::TextureSlot& slot = kept[place[i]];
+    if (used[i] && slot.optional && given[i] == nullptr)
+      slot.binding.flat = module.material_textures + next++;
   }
   module.textures = std::move(kept);
   for (const ir::ValueId id : texture_inputs)

@@ -20,6 +20,14 @@ struct LightFacts {
   bool operator==(const LightFacts&) const = default;
 };
 
+/// Of a program in whose place a module is to be drawn with, with the same buffers and textures bound.
+struct OtherLayout {
+  uint32_t block = 0;  ///< bytes of its material block: the module's own fields lie behind them
+  /// Where it has textures, by the graph's names and, of an environment's, the template's.
+  std::map<std::string, ir::Binding, std::less<>> textures{};
+  bool empty() const { return block == 0 && textures.empty(); }
+};
+
 /// What is wrong with the facts for this module's template: a kind that it does not have, more lights than
 /// its array holds. Codes "unknown-light", "too-many-lights".
 Diagnostics checkLights(const ir::Module& module, const LightFacts& facts);
@@ -51,10 +59,11 @@ void hoistToVertex(ir::Module& module);
 /// material block (its expression goes to Module::preshader), each Interpolate a varying. With
 /// Module::spec_constants nothing is hoisted: parameters become specialization constants with ids in the
 /// order of their names, and those that are animated fields of the block as they are.
-void place(ir::Module& module);
+void place(ir::Module& module, const OtherLayout& other = {});
 
-/// Gives the material's textures that are left their places, and drops the others.
-void bind(ir::Module& module);
+/// Gives the material's textures that are left their places, those of `other` where that has them, and drops
+/// the others.
+void bind(ir::Module& module, const OtherLayout& other = {});
 
 /// Marks the operations of fragments that may be done at half precision, as long as no colour changes by more
 /// than `error` (analysis/relax.h). 0 marks none.

@@ -44,9 +44,9 @@ constexpr std::array kPasses{
     Pass{{"place",
           "splits the DAG at its rates: material values become fields of the `Material` block, interpolated "
           "ones varyings"},
-         [](ir::Module& m, const PipelineOptions&) { place(m); }},
+         [](ir::Module& m, const PipelineOptions& o) { place(m, o.other); }},
     Pass{{"bind", "numbers the textures that are left"},
-         [](ir::Module& m, const PipelineOptions&) { bind(m); }},
+         [](ir::Module& m, const PipelineOptions& o) { bind(m, o.other); }},
     // Behind all that changes values.
     Pass{{"relax", "with `--relaxed`: marks what may be computed at half precision"},
          [](ir::Module& m, const PipelineOptions& o) { relax(m, o.relaxed); }},

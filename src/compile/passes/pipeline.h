@@ -30,6 +30,7 @@ struct PipelineOptions {
   double relaxed = 0;  ///< Options::relaxed
   optimize::Settings optimize{};
   Choose choose{};  ///< of what `optimize` finds; the model where there is none
+  OtherLayout other{};
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().

@@ -124,15 +124,19 @@ struct Placement {
   std::vector<ir::ValueId> read_of;  ///< of a field: the value that reads it, once there is one
 };
 
-/// The material block and its preshader.
-void chooseFields(ir::Module& module, Placement& placement) {
+/// The material block and its preshader. Another program's block comes before its fields: one buffer serves
+/// both.
+void chooseFields(ir::Module& module, const OtherLayout& other, Placement& placement) {
   const std::vector<ir::ValueId> values =
       packed(module.dag, module.spec_constants ? animatedParameters(module) : frontier(module));
   if (values.empty()) return;
   ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0, ir::kMaterialBinding};
   ir::Names names;
   placement.field_of.resize(module.dag.size(), 0);
-  block.fields.reserve(values.size());
+  block.fields.reserve(values.size() + 1);
+  if (other.block != 0) {
+    block.fields.push_back({names.pick("fallback"), ir::Type::Vec4, 0, {}, "not read", other.block / 16});
+  }
   module.preshader.reserve(module.preshader.size() + values.size());
   for (const ir::ValueId id : values) {
     const auto field = static_cast<uint32_t>(block.fields.size());
@@ -297,10 +301,10 @@ void finish(ir::Module& module, Placement& placement) {
 
 }  // namespace
 
-void place(ir::Module& module) {
+void place(ir::Module& module, const OtherLayout& other) {
   Placement placement;
   nameTextures(module);
-  chooseFields(module, placement);
+  chooseFields(module, other, placement);
   if (module.spec_constants) chooseSpecConstants(module);
   const bool own_varyings = module.varyings.empty();
   chooseVaryings(module, placement);

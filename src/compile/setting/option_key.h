@@ -27,7 +27,7 @@ void eachOption(const Options& options, Each each) {
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, properties,
                spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories,
                node_texts, materialx_directories, materialx_texts, document_texts, jobs, cache, cache_size,
-               depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs, weights,
+               depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs, fallback, weights,
                programs_report, programs_model, pipelines] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, as);
@@ -70,6 +70,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Nothing, sync);
   // What comes of them depends on all the inputs together: it goes into the keys by itself.
   each(Decides::Run, programs);
+  each(Decides::Run, fallback);
   each(Decides::Run, weights);
   each(Decides::Run, programs_report);
   each(Decides::Run, programs_model);

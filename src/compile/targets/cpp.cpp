@@ -443,7 +443,7 @@ private:
     };
     for (const ir::BlockField& field : block_->fields) {
       padTo(field.offset);
-      const int width = ir::componentCount(field.type);
+      const int width = ir::componentCount(field.type) * static_cast<int>(field.elements());
       text_.line(width == 1 ? fmt::format("{} {};", memberType(field.type), field.name)
                             : fmt::format("float {}[{}];", field.name, width));
       cursor += 4 * static_cast<uint32_t>(width);

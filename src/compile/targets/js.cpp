@@ -395,7 +395,7 @@ private:
     frozen("fields", "{}", block_ == nullptr, [&] {
       for (const ir::BlockField& field : block_->fields) {
         text_.line(fmt::format("{}: Object.freeze({{ offset: {}, components: {} }}),", keyOf(field.name),
-                               field.offset, ir::componentCount(field.type)));
+                               field.offset, field.stride() * field.elements() / 4));
       }
     });
   }

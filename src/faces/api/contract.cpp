@@ -80,7 +80,7 @@ Contract Making::make(const Strings& materials, const Progress& progress) {
   Setting setting{options_, *language_, baseOf(options_), cache_.get(), nullptr, *limitsOf(options_)};
   Structures structures(setting);
   std::unique_ptr<Sharing> sharing;
-  if (options_.programs > 0) {
+  if (options_.programs > 0 || options_.fallback) {
     Diagnostics said;
     Result<std::unique_ptr<Sharing>> shared = shareDocument(document_, materials, setting, structures, said);
     if (!shared) return contract.ok = wrong(shared.error()), contract;
@@ -113,6 +113,11 @@ Contract contract(const Scene& scene, const Strings& materials, const Options& o
   withJobs(options.jobs,
            [&] { made = Making(scene.impl_->document, options, messages).make(materials, progress); });
   return made;
+}
+
+Drawn Contract::fallback(const Drawn& drawn) const {
+  if (!drawn || !drawn.use->fallback || drawn.use->fallback->shader >= shaders.size()) return {};
+  return {drawn.material, drawn.use->fallback.get(), &shaders[drawn.use->fallback->shader]};
 }
 
 Drawn Contract::drawn(int material, std::optional<size_t> use) const {

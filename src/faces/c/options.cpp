@@ -173,6 +173,7 @@ constexpr Row<lacquer_options> kRows[] = {
     {"cache", "a string", setText<&Options::cache>},
     {"programs", "a whole number",
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.programs); }},
+    {"fallback", kTruth, setBool<&Options::fallback>},
     {"programs_model", kTruth, setBool<&Options::programs_model>},
     {"values", "an object of numbers and arrays of numbers", setValues},
     {"node", "a string",

@@ -87,6 +87,9 @@ void addGeneration(CLI::App& verb, Flags& flags) {
           "at most so many programs: materials share them, each with its own numbers (docs/builds.md)")
       ->check(CLI::Range(1U, kMostPrograms))
       ->check(kWhole);
+  verb.add_flag("--fallback", flags.options.fallback,
+                "beside the shaders one for all materials, with the same bindings: drawn with until each "
+                "material's own is compiled (docs/builds.md)");
   verb.add_option("--weights", flags.options.weights,
                   "a JSON file: how much of the picture each material takes, for --programs")
       ->check(kNotEmpty);

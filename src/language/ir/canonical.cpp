@@ -129,6 +129,7 @@ private:
       number(slot.type);
       number(slot.srgb);
       number(place);
+      if (module_.beside_another && slot.optional) number(slot.binding.flat);
       text(slot.name);
     }
   }

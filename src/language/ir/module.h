@@ -192,6 +192,7 @@ struct Module {
   std::optional<Optimized> optimized{};
   std::vector<std::string> displaces{};  ///< the template's givens that the vertices have elsewhere
   bool sums_lights = false;              ///< an output of the template is a sum over the lights
+  bool beside_another = false;           ///< its places are those of a program that it stands beside
   bool spec_constants =
       false;  ///< parameters are specialization constants: only the animated ones are in a material block
 };
