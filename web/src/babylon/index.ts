@@ -1,0 +1,3 @@
+/** Materials for Babylon.js whose shaders are Lacquer's: a class, an extension of its glTF loader, and the light around. */
+export { LacquerMaterial, materialFrom, attributesOf, type GraphSource, type MaterialOptions } from './material.js';
+export { environmentOf, setEnvironment, type Environment } from './environment.js';
