@@ -79,7 +79,7 @@ async function besideTheLibrary({ text, material, texel, rightHanded, tangents =
   const points = Array.from({ length: size * size }, (_, i) => {
     const [x, y] = [i % size, Math.floor(i / size)].map((at) => ((at + 0.5) / size - 0.5) * 1.5);
     const eye = [-x, -y, 3].map((each) => each / Math.hypot(x, y, 3));
-    return { n: [0, 0, 1], t: [1, 0, 0, 1], v: eye, l, light: radiance, uv0: [x / 2 + 0.5, y / 2 + 0.5], position: [x, y, 0] };
+    return { n: [0, 0, 1], t: [1, 0, 0, 1], v: eye, l, light: radiance, uv0: [x / 2 + 0.5, 0.5 - y / 2], position: [x, y, 0] };
   });
   const decoded = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
   const linear = (srgb) => texel.map((x, i) => (srgb && i < 3 ? decoded(x / 255) : x / 255));
@@ -111,15 +111,223 @@ test('pictures reach their slots, in their colour spaces, and normals bend alike
   const { materials } = JSON.parse(text);
   const material = materials.findIndex((each) => JSON.stringify(each).includes('normalTexture'));
   assert.ok(material >= 0);
-  let found;
+  let right;
   for (const rightHanded of [true, false]) {
     for (const tangents of [true, false]) {
       const { drawn, expected, names } = await inPage(besideTheLibrary, { text, material, rightHanded, tangents, texel: [200, 120, 180, 255] });
       assert.ok(names.length > 0);
-      // The tangents that the shader finds are those of the picture's u as it is turned.
-      if (!tangents) found ??= drawn;
-      assertAlike(drawn, tangents ? expected : found, `${materials[material].name} ${rightHanded} ${tangents}`);
-      drawn.forEach((x, i) => assert.ok(i % 4 === 3 || Math.abs(x - expected[i]) < 0.03, `${x} ${expected[i]}`));
+      right ??= expected; // u runs to the right, v down: the tangents that the quad may have are those that its shader finds
+      assertAlike(drawn, right, `${materials[material].name} ${rightHanded} ${tangents}`);
+    }
+  }
+});
+
+test('surroundings light a scene, and turn and dim as Babylon.js has it', async () => {
+  const at = await inPage(async () => {
+    const [width, height] = [64, 32];
+    const head = new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
+    const picture = new Uint8Array(head.length + 4 * width * height);
+    picture.set(head);
+    // One where +x is, nothing elsewhere.
+    for (let i = 0; i < width * height; ++i)
+      if (i % width > width / 4 && i % width < (3 * width) / 4) picture.set([128, 64, 32, 130], head.length + 4 * i);
+    const results = {};
+    for (const rightHanded of [true, false]) {
+      const scene = sceneOf(rightHanded);
+      const environment = lacquered.environmentOf(lacquer, scene, picture, { size: 32, samples: 64 });
+      const mesh = quadOf(scene);
+      const white = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } };
+      mesh.material = lacquered.materialFrom(lacquer, white, scene);
+      const camera = cameraOf(scene);
+      const middle = async () => (await colours(scene, camera, 1)).slice(0, 3);
+      const dark = await middle();
+      lacquered.setEnvironment(scene, environment);
+      const half = await middle();
+      scene.environmentIntensity = 0.5;
+      const dimmed = await middle();
+      scene.environmentIntensity = 1;
+      // The quad's front is brought to where it is bright, and away; it is seen from there.
+      const turned = async (angle) => {
+        mesh.parent.rotationQuaternion = null;
+        mesh.parent.scaling.z = rightHanded ? 1 : -1;
+        mesh.parent.rotation.y = angle + (rightHanded ? 0 : Math.PI);
+        camera.position = new BABYLON.Vector3(Math.sign(angle) * 3, 0, 0);
+        camera.setTarget(BABYLON.Vector3.Zero());
+        return middle();
+      };
+      const side = rightHanded ? 1 : -1; // +x of the file
+      const bright = await turned((side * Math.PI) / 2);
+      const away = await turned((-side * Math.PI) / 2);
+      lacquered.setEnvironment(scene, null);
+      results[rightHanded] = { dark, half, dimmed, bright, away, none: await middle() };
+      environment.dispose();
+      scene.dispose();
+    }
+    return results;
+  });
+  for (const of of Object.values(at)) {
+    assert.deepEqual(of.dark, [0, 0, 0]);
+    assert.deepEqual(of.none, [0, 0, 0]);
+    assert.ok(of.half[0] > 0.8 && of.half[0] < 1.2, `${of.half}`);
+    of.dimmed.forEach((x, i) => assert.ok(Math.abs(x - of.half[i] / 2) < 1e-3));
+    assert.ok(of.bright[0] > 1.6, `${of.bright}`);
+    assert.ok(of.away[0] < 0.3, `${of.away}`);
+  }
+});
+
+test('the scene\'s own cube lights what setEnvironment() does not, as it lights Babylon.js\'s materials', async () => {
+  const at = await inPage(async () => {
+    // A sky that is brighter above and to one side.
+    const [width, height] = [64, 32];
+    const head = new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
+    const rows = Array.from({ length: height }, (_, y) => [2, 2, 0, width, ...[0, 1, 2, 3].flatMap((channel) => [...Array(width).keys()].flatMap((x) => {
+      const light = [200 - 4 * y, 100 + x, 160, 129][channel];
+      return [1, Math.round(light)];
+    }))]);
+    const url = URL.createObjectURL(new Blob([head, Uint8Array.from(rows.flat())]));
+    const results = [];
+    for (const rightHanded of [true, false]) {
+      const scene = sceneOf(rightHanded);
+      await new Promise((done, failed) => {
+        scene.environmentTexture = new BABYLON.HDRCubeTexture(url, scene, 32, false, true, false, true, done, failed);
+      });
+      scene.environmentTexture.rotationY = 0.7;
+      scene.environmentIntensity = 0.8;
+      const mesh = quadOf(scene);
+      mesh.parent.rotationQuaternion = BABYLON.Quaternion.FromEulerAngles(0.3, 0.4, 0).multiply(mesh.parent.rotationQuaternion ?? BABYLON.Quaternion.Identity());
+      const camera = cameraOf(scene);
+      for (const [metallic, roughness] of [[1, 0.05], [1, 0.5], [0, 1]]) {
+        mesh.material = lacquered.materialFrom(lacquer, { pbrMetallicRoughness: { metallicFactor: metallic, roughnessFactor: roughness } }, scene);
+        const own = await colours(scene, camera, 3);
+        mesh.material = new BABYLON.PBRMaterial('theirs', scene);
+        Object.assign(mesh.material, { metallic, roughness, environmentBRDFTexture: mesh.material.environmentBRDFTexture });
+        const theirs = await colours(scene, camera, 3);
+        results.push({ rightHanded, metallic, roughness, own: own.slice(16, 19), theirs: theirs.slice(16, 19) });
+      }
+      scene.dispose();
+    }
+    return results;
+  });
+  for (const { own, theirs, ...of } of at) {
+    assert.ok(own[0] > 0.1, `${JSON.stringify(of)}: ${own}`);
+    own.forEach((x, i) => assert.ok(Math.abs(x / theirs[i] - 1) < 0.05, `${JSON.stringify(of)}: ${own}, not ${theirs}`));
+  }
+});
+
+/** Counts of what WebGL holds. */
+const kHeld = () => {
+  const gl = engine._gl;
+  if (window.held) return;
+  window.held = { program: 0, buffer: 0, texture: 0 };
+  for (const [kind, name] of [['program', 'Program'], ['buffer', 'Buffer'], ['texture', 'Texture']]) {
+    const [make, drop] = [gl[`create${name}`], gl[`delete${name}`]];
+    gl[`create${name}`] = (...of) => (++held[kind], make.apply(gl, of));
+    gl[`delete${name}`] = (...of) => (--held[kind], drop.apply(gl, of));
+  }
+};
+
+test('numbers change without a program, and what was made is given back', async () => {
+  await inPage(kHeld);
+  const at = await inPage(async () => {
+    const scene = sceneOf();
+    const camera = cameraOf(scene);
+    lampOf(scene);
+    const mesh = quadOf(scene);
+    const look = { pbrMetallicRoughness: { metallicFactor: 0 }, extensions: { KHR_materials_clearcoat: { clearcoatFactor: 1 } } };
+    mesh.material = new BABYLON.StandardMaterial('theirs', scene); // what Babylon.js makes for a mesh of any material
+    await colours(scene, camera);
+    mesh.material = lacquered.materialFrom(lacquer, look, scene);
+    const standing = { ...held };
+    const first = await colours(scene, camera);
+    const one = { ...held };
+    mesh.material.set({ base_color_factor: [0.1, 0.2, 0.3, 1] });
+    const second = await colours(scene, camera);
+    const other = mesh.material.clone('other');
+    const before = mesh.material;
+    mesh.material = other;
+    const kept = await colours(scene, camera);
+    other.set({ base_color_factor: [1, 1, 1, 1] });
+    const third = await colours(scene, camera);
+    const still = held.program;
+    let refused = '';
+    try {
+      other.set({ base_colour: 1 });
+    } catch (error) {
+      refused = String(error);
+    }
+    const names = other.parameters().map(({ name }) => name);
+    before.dispose(true);
+    other.dispose(true);
+    const left = { ...held };
+    scene.dispose();
+    return { first, second, kept, third, one, still, standing, left, refused, names, scene: { ...held } };
+  });
+  assert.equal(at.one.program, at.standing.program + 1);
+  assert.equal(at.still, at.one.program);
+  assert.equal(at.left.program, at.one.program - 1);
+  assert.ok(at.left.buffer <= at.standing.buffer, `${at.left.buffer} ${at.standing.buffer}`);
+  assert.ok(at.second[0] < at.first[0] / 2);
+  assert.deepEqual(at.kept, at.second);
+  assert.deepEqual(at.third, at.first);
+  assert.match(at.refused, /no parameter base_colour; it has .*base_color_factor/);
+  assert.ok(at.names.includes('base_color_factor'));
+});
+
+/** Where a mesh is seen, by its own material and by one of Babylon.js: an array of both. */
+async function covered({ kind, rightHanded }) {
+  const scene = sceneOf(rightHanded);
+  const camera = cameraOf(scene);
+  const mesh = quadOf(scene);
+  const { Bone, Matrix, MorphTarget, MorphTargetManager, Quaternion, Skeleton, Vector3, VertexBuffer } = BABYLON;
+  if (kind === 'skin') {
+    const skeleton = new Skeleton('skeleton', 'skeleton', scene);
+    const first = new Bone('first', skeleton, null, Matrix.Identity());
+    const second = new Bone('second', skeleton, first, Matrix.Identity());
+    mesh.setVerticesData(VertexBuffer.MatricesIndicesKind, [0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]);
+    mesh.setVerticesData(VertexBuffer.MatricesWeightsKind, [1, 0, 0, 0, 0.5, 0.5, 0, 0, 1, 0, 0, 0, 0.25, 0.75, 0, 0]);
+    mesh.skeleton = skeleton;
+    first.rotate(new Vector3(0, 0, 1), 0.4);
+    second.setPosition(new Vector3(0.3, -0.2, 0));
+    second.scale(0.7, 0.7, 0.7);
+  } else if (kind === 'morph') {
+    mesh.morphTargetManager = new MorphTargetManager(scene);
+    const positions = Array.from(mesh.getVerticesData(VertexBuffer.PositionKind));
+    for (const [weight, moved] of [[1, Array(12).fill(0)], [0.8, [0.9, 0.9, 0, 0, 0, 0, -0.3, -0.7, 0, 0, -0.9, 0]]]) {
+      const target = new MorphTarget('target', weight, scene);
+      target.setPositions(positions.map((x, i) => x + moved[i]));
+      mesh.morphTargetManager.addTarget(target);
+    }
+  } else if (kind === 'instances' || kind === 'thin') {
+    for (let i = 0; i < 3; ++i) {
+      const turn = Quaternion.RotationAxis(new Vector3(0, 0, 1), i);
+      const [size, at] = [new Vector3(0.1 + 0.1 * i, 0.2, 1), new Vector3(0.5 * i - 0.5, 0.2 * i, -i)];
+      if (kind === 'thin') mesh.thinInstanceAdd(Matrix.Compose(size, turn, at));
+      else Object.assign(mesh.createInstance(`${i}`), { parent: mesh.parent, scaling: size, rotationQuaternion: turn, position: at });
+    }
+    if (kind === 'instances') mesh.position.x = 9;
+  }
+  mesh.rotation.z = kind === 'instances' ? 0 : 0.2;
+  const seen = async (material) => {
+    mesh.material = material;
+    return (await colours(scene, camera, 32)).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+  };
+  const glowing = { emissiveFactor: [1, 1, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] } };
+  const theirs = new BABYLON.StandardMaterial('theirs', scene);
+  theirs.emissiveColor = new BABYLON.Color3(1, 1, 1);
+  theirs.disableLighting = true;
+  const both = [await seen(lacquered.materialFrom(lacquer, glowing, scene)), await seen(theirs)];
+  scene.dispose();
+  return both;
+}
+
+test('skins, morph targets and instances move it as they move Babylon.js\'s own materials', async () => {
+  for (const rightHanded of [true, false]) {
+    for (const kind of ['plain', 'skin', 'morph', 'instances', 'thin']) {
+      const [own, theirs] = await inPage(covered, { kind, rightHanded });
+      const sum = theirs.reduce((all, x) => all + x, 0);
+      assert.ok(sum > 50 && (kind === 'plain' || sum < 1000), `${kind} ${rightHanded}: ${sum}`);
+      const off = own.filter((x, i) => x !== theirs[i]).length;
+      assert.ok(off <= 2, `${kind} ${rightHanded}: ${off} of ${sum} pixels`);
     }
   }
 });

@@ -61,7 +61,7 @@ window.quadOf = (scene, { tangents = true } = {}) => {
   const data = new VertexData();
   data.positions = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
   data.normals = [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1];
-  data.uvs = [0, 0, 1, 0, 1, 1, 0, 1];
+  data.uvs = [0, 1, 1, 1, 1, 0, 0, 0];
   if (tangents) data.tangents = [1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1];
   data.indices = [0, 1, 2, 0, 2, 3];
   data.applyToMesh(mesh, true);

@@ -1,5 +1,7 @@
 // The light around: the maps of `lacquer environment` as textures of Babylon.js, or a scene's own cube.
 import { Constants } from '@babylonjs/core/Engines/constants.js';
+import type { AbstractEngine } from '@babylonjs/core/Engines/abstractEngine.js';
+import type { ThinEngine } from '@babylonjs/core/Engines/thinEngine.js';
 import { BaseTexture } from '@babylonjs/core/Materials/Textures/baseTexture.js';
 import '@babylonjs/core/Materials/Textures/baseTexture.polynomial.js';
 import { RawCubeTexture } from '@babylonjs/core/Materials/Textures/rawCubeTexture.js';
@@ -38,10 +40,10 @@ function cubeOf(scene: Scene, { edge, levels }: Cube): RawCubeTexture {
   const mips = levels.length > 1;
   const cube = new RawCubeTexture(scene, levels[0], edge, Constants.TEXTUREFORMAT_RGBA, kHalf, mips, false, mips ? mode : bilinear);
   const texture = cube.getInternalTexture();
-  const engine = scene.getEngine();
+  const engine = scene.getEngine() as ThinEngine & AbstractEngine; // WebGL's
   // What was generated below them is not looked up.
   for (let level = 1; level < levels.length && texture; ++level)
-    engine.updateRawCubeTexture(texture, levels[level], Constants.TEXTUREFORMAT_RGBA, kHalf, false, null, level);
+    levels[level].forEach((face, i) => engine.updateTextureData(texture, face, 0, 0, edge >> level, edge >> level, i, level));
   cube.gammaSpace = false;
   return cube;
 }

@@ -148,6 +148,7 @@ export class LacquerMaterial extends ShaderMaterial {
   private values: Record<string, number[]> = {};
   private changes = 0;
   private readonly normals = new Matrix();
+  private readonly effects: Effect[] = [];
 
   constructor(
     name: string,
@@ -161,7 +162,7 @@ export class LacquerMaterial extends ShaderMaterial {
     const engine = scene.getEngine();
     if (engine.isWebGPU || engine.version < 2) throw new TypeError('LacquerMaterial is drawn by an Engine with WebGL 2');
     this.programs = programs;
-    this.backFaceCulling = true;
+    this.onEffectCreatedObservable.add(({ effect }) => this.effects.push(effect));
     if (typeof graph !== 'function') this.programs.for([]); // what is wrong with it is said here
     for (const [slot, texture] of Object.entries(textures)) if (texture) this.slots.set(slot, texture);
   }
@@ -186,14 +187,21 @@ export class LacquerMaterial extends ShaderMaterial {
     ++this.changes;
     this.getScene().resetCachedMaterial();
   }
+  /** The slots that setTexture() takes. */
+  textureSlots(): GraphTexture[] {
+    return this.programs.any().graph.textures();
+  }
+  /** Makes the program for meshes with these attributes before one is drawn. Throws where there is none. */
+  prepare(attributes: Attribute[]): void {
+    this.programs.for(attributes);
+  }
   /** The pictures in its slots, which dispose() leaves as they are. */
   pictures(): BaseTexture[] {
     return [...this.slots.values()];
   }
   /** Another picture for a slot; null for a neutral one. */
   override setTexture(slot: string, texture: BaseTexture | null): this {
-    const of = this.programs.any().interface.textures.find(({ name, role }) => name === slot && role === 'material');
-    if (!of) throw new RangeError(`the shader reads no texture ${slot}`);
+    if (!this.textureSlots().some(({ name }) => name === slot)) throw new RangeError(`the shader reads no texture ${slot}`);
     if (texture) this.slots.set(slot, texture);
     else this.slots.delete(slot);
     this.getScene().resetCachedMaterial();
@@ -254,11 +262,13 @@ export class LacquerMaterial extends ShaderMaterial {
   override bind(world: Matrix, mesh?: Mesh, effectOverride?: Nullable<Effect>, subMesh?: SubMesh): void {
     const effect = effectOverride ?? subMesh?.effect ?? this.getEffect();
     if (!effect || !mesh) return;
-    super.bind(world, mesh, effectOverride, subMesh);
     const scene = this.getScene();
     const made = this.programs.for(attributesOf(mesh));
     const blocks = this.blocksOf(made);
+    // A texture that is made takes the place of one that is bound: they are there before anything is bound.
     const around = surroundingsOf(scene, this.environment);
+    const textures = this.texturesOf(made, around.textures);
+    super.bind(world, mesh, effectOverride, subMesh);
     this.fillBlocks(blocks, mesh, around.levels, around.intensity);
     blocks.bind(effect);
     effect.setMatrix('view', scene.getViewMatrix());
@@ -266,11 +276,7 @@ export class LacquerMaterial extends ShaderMaterial {
     effect.setFloat('lacquer_visibility', mesh.visibility * this.alpha);
     effect.setMatrix3x3('lacquer_turn', around.turn);
     effect.setFloat4('lacquer_levels', ...around.steps);
-    const textures: Record<string, BaseTexture> = { ...tablesOf(this.lacquer, scene), ...around.textures };
-    for (const { name, content, role } of made.interface.textures) {
-      const own = role === 'material' ? (this.slots.get(name) ?? standIn(scene, content)) : textures[name];
-      effect.setTexture(name, name === 'scene_behind' ? behindOf(scene) : (own ?? standIn(scene)));
-    }
+    for (const [name, texture] of textures) effect.setTexture(name, texture);
     if (scene.fogEnabled && mesh.applyFog) effect.setColor3('vFogColor', scene.fogColor.toLinearSpace());
     scene.imageProcessingConfiguration.bind(effect);
   }
@@ -279,7 +285,9 @@ export class LacquerMaterial extends ShaderMaterial {
     for (const blocks of this.blocks.values()) blocks.dispose();
     this.blocks.clear();
     if (forceDisposeTextures) for (const texture of this.slots.values()) texture.dispose();
-    super.dispose(forceDisposeEffect, forceDisposeTextures, notBoundToMesh);
+    super.dispose(false, forceDisposeTextures, notBoundToMesh);
+    // Of each it has one share, whether it is still on a mesh or not.
+    if (forceDisposeEffect) this.effects.splice(0).forEach((effect) => effect.dispose());
   }
 
   private blocksOf(made: Made): Blocks {
@@ -289,6 +297,15 @@ export class LacquerMaterial extends ShaderMaterial {
       this.blocks.set(made, blocks);
     }
     return blocks;
+  }
+
+  private texturesOf(made: Made, around: Record<string, BaseTexture>): [string, BaseTexture][] {
+    const scene = this.getScene();
+    const frame: Record<string, BaseTexture> = { ...tablesOf(this.lacquer, scene), ...around };
+    return made.interface.textures.map(({ name, content, role }) => {
+      if (name === 'scene_behind') return [name, behindOf(scene)];
+      return [name, (role === 'material' ? this.slots.get(name) : frame[name]) ?? standIn(scene, content)];
+    });
   }
 
   /** What has changed since the last object. */
@@ -333,7 +350,7 @@ export function materialFrom(
   const file = lacquer.scene(JSON.stringify(fileOf(json, textures.length)), 'material.gltf', options, messages);
   const graph = (attributes: Attribute[]) => file.graph(0, options, attributes, messages);
   const material = new LacquerMaterial((json as { name?: string }).name ?? 'material', scene, lacquer, graph, { options, messages });
-  for (const slot of graph(kOptional).textures()) {
+  for (const slot of material.textureSlots()) {
     if (textures[slot.texture]) material.setTexture(slot.name, asSlot(textures[slot.texture], slot));
   }
   return withStates(material, json);
