@@ -7,13 +7,15 @@ import { basename, dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { build } from 'esbuild';
 import { kPatience, kSlow, launch, listen, serve } from './browser.mjs';
-import { inputs, output, read, realFiles, root } from './native.mjs';
+import { glb, inputs, output, read, realFiles, root } from './native.mjs';
 import { assertAlike, drawnFiles } from './renderers.mjs';
 
 const kPage = `<!doctype html><meta charset="utf-8"><title>babylon</title><link rel="icon" href="data:,">
 <canvas width="64" height="64"></canvas><script type="module" src="page.js"></script>`;
 /** What it says of itself when it starts. */
 const kStarts = /^(BJS - \[.*\]: )?Babylon.js v|GPU stall/;
+/** What the browser says of pictures that are not there. */
+const kLoads = /Failed to load resource|GPU stall|^BJS - /;
 
 let browser;
 let server;
@@ -28,9 +30,19 @@ before(async () => {
   await build({
     entryPoints: [join(root, 'web/test/babylon_page.mjs')], outdir: folder, entryNames: 'page', bundle: true, format: 'esm', splitting: true,
     target: 'es2022', logLevel: 'error', external: ['./packed.js'], nodePaths: [join(root, 'web/node_modules')],
-    alias: { '@lacquer-shaders/lacquer/babylon': join(made, 'babylon.js'), '@lacquer-shaders/lacquer': join(made, 'index.js') },
+    alias: {
+      '@lacquer-shaders/lacquer/babylon': join(made, 'babylon.js'), '@lacquer-shaders/lacquer/gltf': join(made, 'gltf.js'),
+      '@lacquer-shaders/lacquer': join(made, 'index.js'),
+    },
   });
   copyFileSync(join(made, 'lacquer.wasm'), join(folder, 'lacquer.wasm'));
+  cpSync(join(root, 'web/examples/webgl2'), join(folder, 'webgl2'), { recursive: true });
+  // Its lamp's direction is a unit but for a thousandth.
+  const unit = (text) => JSON.stringify(JSON.parse(text).map((x, _, all) => x / Math.hypot(...all)));
+  const example = read('web/examples/webgl2/main.js').toString().replace(/\[-?0\.4, -?0\.5, -?0\.77\]/g, unit);
+  writeFileSync(join(folder, 'webgl2/main.js'), example);
+  mkdirSync(join(folder, 'webgl2/node_modules/@lacquer-shaders'), { recursive: true });
+  symlinkSync(made, join(folder, 'webgl2/node_modules/@lacquer-shaders/lacquer'));
   const [real] = realFiles();
   if (real) symlinkSync(dirname(dirname(real)), join(folder, 'assets'));
   cpSync(join(root, 'examples'), join(folder, 'examples'), { recursive: true, filter: (name) => !/\.(cpp|h|txt)$/.test(name) });
@@ -329,5 +341,340 @@ test('skins, morph targets and instances move it as they move Babylon.js\'s own 
       const off = own.filter((x, i) => x !== theirs[i]).length;
       assert.ok(off <= 2, `${kind} ${rightHanded}: ${off} of ${sum} pixels`);
     }
+  }
+});
+
+test('fog and image processing are the scene\'s', async () => {
+  const at = await inPage(async () => {
+    const { Color3, ImageProcessingConfiguration, PBRMaterial, Scene } = BABYLON;
+    const scene = new Scene(engine);
+    scene.useRightHandedSystem = true;
+    const camera = cameraOf(scene, false);
+    camera.fov = 0.5;
+    const mesh = quadOf(scene);
+    const glowing = { emissiveFactor: [0.5, 0.25, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] } };
+    const own = lacquered.materialFrom(lacquer, glowing, scene);
+    const theirs = new PBRMaterial('theirs', scene);
+    theirs.unlit = true;
+    theirs.albedoColor = new Color3(0.5, 0.25, 1);
+    const shown = async (material) => {
+      mesh.material = material;
+      await scene.whenReadyAsync();
+      scene.render();
+      const gl = engine._gl;
+      const pixel = new Uint8Array(4);
+      gl.readPixels(32, 32, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      return [...pixel];
+    };
+    const both = async () => [await shown(own), await shown(theirs)];
+    const plain = await both();
+    const { imageProcessingConfiguration: processing } = scene;
+    processing.toneMappingEnabled = true;
+    processing.toneMappingType = ImageProcessingConfiguration.TONEMAPPING_KHR_PBR_NEUTRAL;
+    processing.exposure = 1.5;
+    processing.contrast = 1.2;
+    const toned = await both();
+    scene.fogMode = Scene.FOGMODE_LINEAR;
+    [scene.fogStart, scene.fogEnd] = [1, 6];
+    scene.fogColor = new Color3(0.2, 0.4, 0.6);
+    const foggy = await both();
+    scene.fogMode = Scene.FOGMODE_EXP2;
+    scene.fogDensity = 0.3;
+    const denser = await both();
+    scene.dispose();
+    return { plain, toned, foggy, denser };
+  });
+  for (const [name, [own, theirs]] of Object.entries(at)) {
+    own.forEach((x, i) => assert.ok(Math.abs(x - theirs[i]) <= 2, `${name}: ${own}, not ${theirs}`));
+  }
+  assert.notDeepEqual(at.plain[0], at.toned[0]);
+  assert.notDeepEqual(at.toned[0], at.foggy[0]);
+});
+
+test('through glass the scene is seen, and no other glass', async () => {
+  const at = await inPage(async () => {
+    const results = [];
+    for (const rightHanded of [true, false]) {
+      const scene = sceneOf(rightHanded);
+      const wall = quadOf(scene);
+      wall.position.z = -2;
+      wall.scaling.setAll(4);
+      wall.material = new BABYLON.StandardMaterial('wall', scene);
+      Object.assign(wall.material, { emissiveColor: new BABYLON.Color3(0.2, 0.8, 0.4), disableLighting: true });
+      const glass = quadOf(scene);
+      const extensions = { KHR_materials_transmission: { transmissionFactor: 1 } };
+      const clear = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 0 }, extensions };
+      glass.material = lacquered.materialFrom(lacquer, clear, scene);
+      const behind = quadOf(scene);
+      behind.material = glass.material;
+      behind.position.z = -1;
+      const camera = cameraOf(scene, false);
+      camera.fov = 0.3;
+      await colours(scene, camera, 9);
+      results.push((await colours(scene, camera, 9)).slice(4 * 40, 4 * 40 + 3));
+      scene.dispose();
+    }
+    return results;
+  });
+  // The wall's numbers are sRGB. Fresnel takes four hundredths.
+  for (const seen of at) [0.2, 0.8, 0.4].forEach((x, i) => assert.ok(Math.abs(seen[i] - 0.96 * x ** 2.2) < 0.01, `${seen}`));
+});
+
+test('points and spots light as they do in the library, those that do not reach a mesh not', async () => {
+  const at = await inPage(async () => {
+    const results = [];
+    for (const rightHanded of [true, false]) {
+      const { Color3, PointLight, SpotLight } = BABYLON;
+      const scene = sceneOf(rightHanded);
+      const mesh = quadOf(scene);
+      mesh.material = lacquered.materialFrom(lacquer, { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } }, scene);
+      const camera = cameraOf(scene);
+      const near = placed(scene, 0.5, 0, 1);
+      const middle = async () => (await colours(scene, camera, 1))[0];
+      const point = new PointLight('point', near, scene);
+      [point.intensity, point.range, point.diffuse] = [3, 4, new Color3(1, 1, 1)];
+      const lit = await middle();
+      point.excludedMeshes.push(mesh);
+      const excluded = await middle();
+      point.setEnabled(false);
+      const spot = new SpotLight('spot', near, near.scale(-1), 1, 1, scene);
+      [spot.intensity, spot.range, spot.angle, spot.innerAngle] = [3, 4, 0.5, 0.3];
+      const aimed = await middle();
+      spot.direction = placed(scene, 1, 0, -1);
+      results.push({ lit, excluded, aimed, past: await middle() });
+      scene.dispose();
+    }
+    return results;
+  });
+  for (const { lit, excluded, aimed, past } of at) {
+    // Of 3 candela at a distance of the root of 1.25, under a cosine of that, to the window of a range of 4; the rest is the lobe's.
+    const distance2 = 1.25;
+    const irradiance = (3 / distance2) * (1 / Math.sqrt(distance2)) * (1 - (distance2 / 16) ** 2);
+    assert.ok(lit > (0.9 * irradiance) / Math.PI && lit < (1.1 * irradiance) / Math.PI, `${lit} ${irradiance / Math.PI}`);
+    assert.ok(Math.abs(aimed - lit) < 1e-3, `${aimed} ${lit}`);
+    assert.deepEqual([excluded, past], [0, 0]);
+  }
+});
+
+test('what is wrong is refused and changes nothing', async () => {
+  const said = await inPage(async () => {
+    const scene = sceneOf();
+    const camera = cameraOf(scene);
+    lampOf(scene);
+    const mesh = quadOf(scene);
+    mesh.material = lacquered.materialFrom(lacquer, {}, scene);
+    const before = await colours(scene, camera, 1);
+    const refused = (run) => {
+      try {
+        run();
+        return 'taken';
+      } catch (error) {
+        return String(error);
+      }
+    };
+    const make = (template) => lacquered.materialFrom(lacquer, {}, scene, { options: { template } }).prepare([]);
+    const texts = [
+      refused(() => mesh.material.set({ base_color_factor: [0.5, 1] })),
+      refused(() => mesh.material.set({ roughness_factor: NaN })),
+      refused(() => mesh.material.setTexture('coat_texture', null)),
+      refused(() => lacquered.setEnvironment(scene, {})),
+      refused(() => lacquered.environmentOf(lacquer, scene, undefined)),
+      refused(() => make('bsdf')),
+      refused(() => make('forward_clustered')),
+    ];
+    const after = await colours(scene, camera, 1);
+    mesh.material.set({ base_color_factor: new Float32Array([0, 0, 0, 1]) });
+    const dark = (await colours(scene, camera, 1))[0] < before[0] / 2;
+    scene.dispose();
+    return { texts, same: String(before) === String(after), dark };
+  });
+  const expected = [/2 numbers/, /NaN is no number/, /reads no texture coat_texture/, /no environment/, /Radiance picture/, /not bsdf/, /not forward_clustered/];
+  expected.forEach((text, i) => assert.match(said.texts[i], text));
+  assert.ok(said.same && said.dark);
+});
+
+test('colours of vertices are drawn, and not where the mesh does not use them', async () => {
+  const at = await inPage(async () => {
+    const scene = sceneOf();
+    const camera = cameraOf(scene);
+    lampOf(scene);
+    const mesh = quadOf(scene);
+    mesh.setVerticesData(BABYLON.VertexBuffer.ColorKind, [1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1]);
+    mesh.material = lacquered.materialFrom(lacquer, { pbrMetallicRoughness: { metallicFactor: 0 } }, scene);
+    const red = await colours(scene, camera, 1);
+    mesh.useVertexColors = false;
+    const white = await colours(scene, camera, 1);
+    scene.dispose();
+    return { red, white };
+  });
+  assert.ok(at.red[0] > 2 * at.red[1], `${at.red}`);
+  assert.ok(at.white[1] > 2 * at.red[1], `${at.white}`);
+});
+
+/** A file by Babylon.js's loader with the extension, drawn: what has become of its materials. */
+async function loaded({ url, container = false, rightHanded = true }) {
+  const told = [];
+  BABYLON.registerGLTFExtension('LACQUER', false, (loader) => new lacquered.LacquerExtension(loader, lacquer, { onMessage: (message) => told.push(message) }));
+  const scene = sceneOf(rightHanded);
+  try {
+    if (container) (await BABYLON.LoadAssetContainerAsync(url, scene)).addAllToScene();
+    else await BABYLON.AppendSceneAsync(url, scene);
+    lampOf(scene);
+    const { min, max } = scene.getWorldExtends((mesh) => mesh.getTotalVertices() > 0);
+    const radius = Math.max(max.subtract(min).length() / 2, 1e-6);
+    const camera = new BABYLON.TargetCamera('camera', min.add(max).scale(0.5).add(new BABYLON.Vector3(0, 0, 3 * radius)), scene);
+    camera.setTarget(min.add(max).scale(0.5));
+    [camera.fov, camera.minZ, camera.maxZ] = [0.68, radius / 4, 10 * radius];
+    const drawn = await colours(scene, camera, 32);
+    const meshes = scene.meshes.filter((mesh) => mesh.getTotalVertices() > 0);
+    return {
+      kinds: meshes.map(({ material }) => material?.isLacquerMaterial === true),
+      materials: scene.materials.filter((each, i, all) => all.indexOf(each) !== i).length,
+      errors: told.filter(({ level }) => level === 'error').map(({ text }) => text),
+      finite: drawn.every(Number.isFinite), lit: drawn.some((x, i) => i % 4 < 3 && x > 0.01),
+    };
+  } finally {
+    scene.dispose();
+    BABYLON.unregisterGLTFExtension('LACQUER');
+  }
+}
+
+test('the loader with the extension draws every example', async () => {
+  for (const file of inputs().filter((name) => name.startsWith('examples/'))) {
+    const { kinds, errors, finite, materials } = await inPage(loaded, { url: `${server.url}/${file}` }, kLoads);
+    assert.deepEqual(errors, [], file);
+    assert.ok(kinds.length > 0 && kinds.every(Boolean) && finite && materials === 0, `${file}: ${kinds} ${finite} ${materials}`);
+  }
+  for (const container of [false, true]) {
+    for (const rightHanded of [false, true]) {
+      const { kinds, lit, materials } = await inPage(loaded, { url: `${server.url}/webgl2/triangle.gltf`, container, rightHanded }, kLoads);
+      assert.ok(kinds.every(Boolean) && lit && materials === 0, `${container} ${rightHanded}`);
+    }
+  }
+});
+
+/** Materials of several extensions each, from bench/peers/gallery.gltf. */
+const kSeveral = [
+  'Clearcoat over rough metal', 'Iridescence under clearcoat', 'Anisotropy, turned', 'Anisotropy under clearcoat', 'Coat, all of it',
+  'Coloured coat over metal', 'Clearcoat colour', 'Diffuse roughness', 'Retroreflection', 'Specular-glossiness', 'Texture transform', 'Bump',
+];
+
+/** Balls of them, with tangents, in rows of four; one is a mirrored and stretched one. */
+function balls() {
+  const gallery = JSON.parse(read('bench/peers/gallery.gltf'));
+  const materials = kSeveral.map((name) => gallery.materials.find((each) => each.name === name));
+  const [columns, rows] = [48, 24];
+  const data = { POSITION: [], NORMAL: [], TANGENT: [], TEXCOORD_0: [] };
+  for (let i = 0; i < (columns + 1) * (rows + 1); ++i) {
+    const [u, v] = [(i % (columns + 1)) / columns, Math.floor(i / (columns + 1)) / rows];
+    const [turn, polar] = [2 * Math.PI * u, Math.PI * v];
+    const n = [Math.sin(polar) * Math.sin(turn), Math.cos(polar), Math.sin(polar) * Math.cos(turn)];
+    data.POSITION.push(...n);
+    data.NORMAL.push(...n);
+    data.TANGENT.push(Math.cos(turn), 0, -Math.sin(turn), 1);
+    data.TEXCOORD_0.push(u, v);
+  }
+  const indices = [];
+  for (let row = 0; row < rows; ++row) {
+    for (let column = 0; column < columns; ++column) {
+      const [a, b] = [row, row + 1].map((each) => each * (columns + 1) + column);
+      indices.push(a, b, a + 1, a + 1, b, b + 1);
+    }
+  }
+  const parts = [...Object.values(data).map((numbers) => Buffer.from(Float32Array.from(numbers).buffer)), Buffer.from(Uint16Array.from(indices).buffer)];
+  let byteOffset = 0;
+  const bufferViews = parts.map(({ length: byteLength }) => ({ buffer: 0, byteLength, byteOffset: (byteOffset += byteLength) - byteLength }));
+  const count = (columns + 1) * (rows + 1);
+  const types = ['VEC3', 'VEC3', 'VEC4', 'VEC2'];
+  const accessors = [
+    ...types.map((type, bufferView) => ({ bufferView, componentType: 5126, count, type, ...(bufferView ? {} : { min: [-1, -1, -1], max: [1, 1, 1] }) })),
+    { bufferView: 4, componentType: 5123, count: indices.length, type: 'SCALAR' },
+  ];
+  const { images, textures, extensionsUsed } = gallery;
+  const attributes = { POSITION: 0, NORMAL: 1, TANGENT: 2, TEXCOORD_0: 3 };
+  const nodes = materials.map((_, i) => ({ mesh: i, translation: [2.2 * (i % 4), -2.2 * Math.floor(i / 4), 0] }));
+  Object.assign(nodes[3], { scale: [-0.7, 1, 1.2], rotation: [0, Math.sin(0.3), 0, Math.cos(0.3)] });
+  return glb({
+    asset: { version: '2.0' }, extensionsUsed, materials, images, textures, nodes, accessors, bufferViews, buffers: [{ byteLength: byteOffset }],
+    meshes: materials.map((_each, material) => ({ primitives: [{ attributes, indices: 4, material }] })),
+    scene: 0, scenes: [{ nodes: nodes.map((_, i) => i) }],
+  }, Buffer.concat(parts));
+}
+
+/** The pixels of web/examples/webgl2, which has the camera and the lamp of ballsLikeIt(). */
+async function byTheExample(file) {
+  const own = await browser.newPage();
+  try {
+    await own.addInitScript(() => {
+      const { getContext } = HTMLCanvasElement.prototype;
+      HTMLCanvasElement.prototype.getContext = function (kind) {
+        this.width = this.height = 256;
+        return (window.gl = getContext.call(this, kind, { antialias: false, preserveDrawingBuffer: true }));
+      };
+      const { generateMipmap } = WebGL2RenderingContext.prototype;
+      WebGL2RenderingContext.prototype.generateMipmap = function (target) {
+        generateMipmap.call(this, target);
+        this.texParameteri(target, this.TEXTURE_MIN_FILTER, this.LINEAR_MIPMAP_LINEAR);
+      };
+    });
+    const { unlessItFails } = listen(own, kSlow);
+    await own.goto(`${server.url}/webgl2/index.html?${file}`, { timeout: kPatience });
+    await unlessItFails(own.waitForFunction(() => document.title === 'drawn', null, { timeout: kPatience }));
+    return await own.evaluate(() => {
+      const pixels = new Uint8Array(4 * 256 * 256);
+      gl.readPixels(0, 0, 256, 256, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return Array.from(pixels);
+    });
+  } finally {
+    await own.close();
+  }
+}
+
+async function ballsLikeIt({ url, rightHanded }) {
+  const options = { ibl: false };
+  BABYLON.registerGLTFExtension('LACQUER', false, (loader) => new lacquered.LacquerExtension(loader, lacquer, { options }));
+  const scene = sceneOf(rightHanded);
+  try {
+    await BABYLON.AppendSceneAsync(url, scene);
+    scene.textures.forEach((texture) => (texture.anisotropicFilteringLevel = 1));
+    scene.clearColor = new BABYLON.Color4(0.1, 0.1, 0.12, 1);
+    const lamp = lampOf(scene);
+    [lamp.direction, lamp.diffuse, lamp.intensity] = [placed(scene, -0.4, -0.5, -0.77), new BABYLON.Color3(1, 1, 1), 3];
+    const { bounds, fetchGltf, geometry } = files;
+    const { middle: [x, y, z], radius } = bounds(geometry(await fetchGltf(url)));
+    const camera = new BABYLON.TargetCamera('camera', placed(scene, x, y, z + 3 * radius), scene);
+    camera.setTarget(placed(scene, x, y, z));
+    [camera.fov, camera.minZ, camera.maxZ] = [2 * Math.atan(1 / 2.8), radius, 5 * radius];
+    return await colours(scene, camera, 256);
+  } finally {
+    scene.dispose();
+    BABYLON.unregisterGLTFExtension('LACQUER');
+  }
+}
+
+test('a file of several extensions looks as in a page of our own, in a scene of either hand', async () => {
+  writeFileSync(join(folder, 'webgl2/balls.glb'), balls());
+  const expected = await byTheExample('balls.glb');
+  const lit = expected.filter((x, i) => i % 4 === 0 && x > 60).length;
+  assert.ok(lit > 5_000, `${lit}`);
+  for (const rightHanded of [true, false]) {
+    const drawn = await inPage(ballsLikeIt, { url: `${server.url}/webgl2/balls.glb`, rightHanded }, kLoads);
+    let off = 0;
+    expected.forEach((x, i) => {
+      if (i % 4 < 3 && Math.abs(Math.min(Math.max(drawn[i], 0), 1) * 255 - x) > 2) ++off;
+    });
+    // Of 196,608: what lies on the edges of triangles.
+    assert.ok(off < 10, `${rightHanded}: ${off} numbers are off by more than 2 / 255`);
+  }
+});
+
+test('the loader with the extension draws real files', async (t) => {
+  const files = drawnFiles();
+  if (files.length === 0) return t.skip('there is no assets folder');
+  for (const file of files) {
+    const place = `${basename(dirname(file))}/${basename(file)}`;
+    const { kinds, errors, finite, lit } = await inPage(loaded, { url: `${server.url}/assets/${place}` }, kLoads);
+    assert.deepEqual(errors, [], place);
+    assert.ok(kinds.every(Boolean) && finite && (lit || kinds.length === 0), `${place}: ${kinds} ${finite} ${lit}`);
   }
 });

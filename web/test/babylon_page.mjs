@@ -15,6 +15,7 @@ import {
 } from '@babylonjs/core';
 import { registerGLTFExtension, unregisterGLTFExtension } from '@babylonjs/loaders/glTF/2.0/index.js';
 import { load } from '@lacquer-shaders/lacquer';
+import * as files from '@lacquer-shaders/lacquer/gltf';
 import * as lacquered from '@lacquer-shaders/lacquer/babylon';
 
 const BABYLON = {
@@ -24,7 +25,7 @@ const BABYLON = {
   Vector3, VertexBuffer, VertexData, registerGLTFExtension, unregisterGLTFExtension,
 };
 const engine = new Engine(document.querySelector('canvas'), false, { preserveDrawingBuffer: true });
-Object.assign(window, { BABYLON, lacquered, engine, lacquer: await load('lacquer.wasm') });
+Object.assign(window, { BABYLON, lacquered, files, engine, lacquer: await load('lacquer.wasm') });
 
 /** A scene whose materials give linear colours. */
 window.sceneOf = (rightHanded = true) => {
