@@ -51,7 +51,7 @@ async function makePackage() {
   copyFileSync(wasm, join(folder, 'lacquer.wasm'));
   writeFileSync(join(folder, 'packed.js'), `export default '${packed}';\n`);
   for (const file of ['package.json', 'README.md']) copyFileSync(join(here, 'package', file), join(folder, file));
-  for (const example of ['webgl2', 'webgpu', 'three']) copyExample(example, join(folder, 'examples', example));
+  for (const example of ['webgl2', 'webgpu', 'three', 'babylon']) copyExample(example, join(folder, 'examples', example));
   copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));
 }
 

@@ -678,3 +678,21 @@ test('the loader with the extension draws real files', async (t) => {
     assert.ok(kinds.every(Boolean) && finite && (lit || kinds.length === 0), `${place}: ${kinds} ${finite} ${lit}`);
   }
 });
+
+test('its example draws, without a bundler', async () => {
+  const place = join(folder, 'example');
+  cpSync(join(root, 'web/examples/babylon'), place, { recursive: true });
+  mkdirSync(join(place, 'node_modules/@lacquer-shaders'), { recursive: true });
+  symlinkSync(join(root, 'web/node_modules/@babylonjs'), join(place, 'node_modules/@babylonjs'));
+  symlinkSync(join(output, 'package'), join(place, 'node_modules/@lacquer-shaders/lacquer'));
+  const own = await browser.newPage();
+  try {
+    const { said, unlessItFails } = listen(own, kStarts);
+    await own.goto(`${server.url}/example/index.html`, { timeout: kPatience });
+    await unlessItFails(own.waitForFunction(() => document.title === 'drawn', null, { timeout: kPatience }));
+    assert.deepEqual(said, []);
+    assert.ok((await own.locator('canvas').screenshot()).length > 3000);
+  } finally {
+    await own.close();
+  }
+});

@@ -1,4 +1,5 @@
 // The scene without what is seen through, for materials that look through: drawn once before each camera's picture.
+import '@babylonjs/core/Engines/Extensions/engine.renderTarget.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
 import type { AbstractMesh } from '@babylonjs/core/Meshes/abstractMesh.js';
