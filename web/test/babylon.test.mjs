@@ -189,12 +189,12 @@ test('surroundings light a scene, and turn and dim as Babylon.js has it', async 
 
 test('the scene\'s own cube lights what setEnvironment() does not, as it lights Babylon.js\'s materials', async () => {
   const at = await inPage(async () => {
-    // A sky that is brighter above and to one side.
+    // Each direction has its own colour, and red has stripes.
     const [width, height] = [64, 32];
     const head = new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
     const rows = Array.from({ length: height }, (_, y) => [2, 2, 0, width, ...[0, 1, 2, 3].flatMap((channel) => [...Array(width).keys()].flatMap((x) => {
-      const light = [200 - 4 * y, 100 + x, 160, 129][channel];
-      return [1, Math.round(light)];
+      const turn = (2 * Math.PI * (x + 0.5)) / width;
+      return [1, [120 + 60 * Math.cos(turn) + 60 * ((x >> 2) % 2), 240 - 7 * y, 120 + 110 * Math.sin(turn), 129][channel]];
     }))]);
     const url = URL.createObjectURL(new Blob([head, Uint8Array.from(rows.flat())]));
     const results = [];
@@ -222,7 +222,8 @@ test('the scene\'s own cube lights what setEnvironment() does not, as it lights 
   });
   for (const { own, theirs, ...of } of at) {
     assert.ok(own[0] > 0.1, `${JSON.stringify(of)}: ${own}`);
-    own.forEach((x, i) => assert.ok(Math.abs(x / theirs[i] - 1) < 0.05, `${JSON.stringify(of)}: ${own}, not ${theirs}`));
+    // What bounces more than once has another form in each.
+    own.forEach((x, i) => assert.ok(Math.abs(x - theirs[i]) < 0.03, `${JSON.stringify(of)}: ${own}, not ${theirs}`));
   }
 });
 
@@ -517,8 +518,13 @@ async function loaded({ url, container = false, rightHanded = true }) {
   BABYLON.registerGLTFExtension('LACQUER', false, (loader) => new lacquered.LacquerExtension(loader, lacquer, { onMessage: (message) => told.push(message) }));
   const scene = sceneOf(rightHanded);
   try {
-    if (container) (await BABYLON.LoadAssetContainerAsync(url, scene)).addAllToScene();
-    else await BABYLON.AppendSceneAsync(url, scene);
+    if (container) {
+      const held = await BABYLON.LoadAssetContainerAsync(url, scene);
+      if (scene.materials.length !== 0 || !held.materials.some((each) => each.isLacquerMaterial)) throw new Error('the container has them not');
+      held.addAllToScene();
+    } else {
+      await BABYLON.AppendSceneAsync(url, scene);
+    }
     lampOf(scene);
     const { min, max } = scene.getWorldExtends((mesh) => mesh.getTotalVertices() > 0);
     const radius = Math.max(max.subtract(min).length() / 2, 1e-6);

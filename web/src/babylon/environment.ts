@@ -111,13 +111,15 @@ const kFaces: ((u: number, v: number) => number[])[] = [
   (u, v) => [1, -v, -u], (u, v) => [-1, -v, u], (u, v) => [u, 1, v], (u, v) => [u, -1, -v], (u, v) => [u, -v, 1], (u, v) => [-u, -v, -1],
 ];
 
-/** The irradiance over pi that Babylon.js has as a polynomial, as a cube. */
-function irradianceOf(scene: Scene, polynomial: SphericalPolynomial): RawCubeTexture {
-  const { x, y, z, xx, yy, zz, xy, yz, zx } = polynomial;
+/** The irradiance over pi that Babylon.js's materials have as harmonics, as a cube. */
+function irradianceOf(scene: Scene, { preScaledHarmonics: of }: SphericalPolynomial): RawCubeTexture {
   const at = (n: number[]) => {
-    const [a, b, c] = n.map((each) => each / Math.hypot(...n));
-    const terms = [[x, a], [y, b], [z, c], [xx, a * a], [yy, b * b], [zz, c * c], [xy, a * b], [yz, b * c], [zx, c * a]] as const;
-    return (['x', 'y', 'z'] as const).map((channel) => terms.reduce((sum, [of, factor]) => sum + of[channel] * factor, 0));
+    const [x, y, z] = n.map((each) => each / Math.hypot(...n));
+    const terms = [
+      [of.l00, 1], [of.l1_1, y], [of.l10, z], [of.l11, x], [of.l2_2, y * x], [of.l2_1, y * z], [of.l20, 3 * z * z - 1], [of.l21, z * x],
+      [of.l22, x * x - y * y],
+    ] as const;
+    return (['x', 'y', 'z'] as const).map((channel) => terms.reduce((sum, [each, factor]) => sum + each[channel] * factor, 0));
   };
   const edge = kIrradianceEdge;
   const middle = (i: number) => ((i + 0.5) / edge) * 2 - 1;
