@@ -52,6 +52,7 @@ export class LacquerExtension implements IGLTFLoaderExtension {
     const inMaterials = JSON.stringify(materials ?? []);
     const known = (name: string) => inMaterials.includes(`"${name}"`) || name === 'NV_texture_swizzle';
     if (gltf.extensionsRequired) gltf.extensionsRequired = gltf.extensionsRequired.filter((name) => !known(name));
+    this.leaveOut();
     for (const texture of textures ?? []) texture.source ??= swizzledImage(texture) as number;
   }
 
@@ -74,9 +75,19 @@ export class LacquerExtension implements IGLTFLoaderExtension {
     if (!this.ours.has(material)) return null;
     const made = material as LacquerMaterial;
     return Promise.all(made.textureSlots().map(async (slot) => {
-      const picture = await this.picture(context, slot).catch((error) => this.missing(`${context}/${slot.name}`, String(error)));
+      const picture = await this.picture(context, slot).catch((error) => this.warn('picture-missing', `${context}/${slot.name}`, String(error)));
       if (picture) made.setTexture(slot.name, asSlot(picture, slot));
     })).then(() => undefined);
+  }
+
+  /** Animations of what Babylon.js's own materials have, by KHR_animation_pointer: these have it not. */
+  private leaveOut(): void {
+    (this.loader.gltf.animations ?? []).forEach((animation, index) => {
+      const kept = animation.channels.filter(({ target }) => !/^\/(materials|textures)\//.test(target.extensions?.KHR_animation_pointer?.pointer ?? ''));
+      if (kept.length === animation.channels.length) return;
+      animation.channels = kept;
+      this.warn('material-animation', `/animations/${index}`, 'what it animates of materials stays as it is');
+    });
   }
 
   private defaultOf(drawMode: number): LacquerMaterial | null {
@@ -133,9 +144,8 @@ export class LacquerExtension implements IGLTFLoaderExtension {
     });
   }
 
-  /** A neutral one stands for it. */
-  private missing(pointer: string, text: string): null {
-    this.tell({ level: 'warning', code: 'picture-missing', file: '', pointer, line: 0, column: 0, message: text, help: '', text: `${pointer}: ${text}` });
+  private warn(code: string, pointer: string, message: string): null {
+    this.tell({ level: 'warning', code, file: '', pointer, line: 0, column: 0, message, help: '', text: `${pointer}: ${message}` });
     return null;
   }
 
