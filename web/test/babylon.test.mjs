@@ -421,6 +421,32 @@ test('through glass the scene is seen, and no other glass', async () => {
   for (const seen of at) [0.2, 0.8, 0.4].forEach((x, i) => assert.ok(Math.abs(seen[i] - 0.96 * x ** 2.2) < 0.01, `${seen}`));
 });
 
+test('shadows fall from it on what Babylon.js draws', async () => {
+  const [lit, shaded] = await inPage(async () => {
+    const scene = sceneOf();
+    const camera = cameraOf(scene);
+    const lamp = lampOf(scene);
+    lamp.direction.set(1, 0, -1);
+    lamp.position.set(-4, 0, 4);
+    const wall = quadOf(scene);
+    wall.material = new BABYLON.StandardMaterial('wall', scene);
+    wall.receiveShadows = true;
+    const caster = quadOf(scene);
+    caster.scaling.setAll(0.3);
+    caster.position.set(-1.2, 0, 1.2);
+    caster.material = lacquered.materialFrom(lacquer, { doubleSided: true }, scene);
+    const middle = async () => (await colours(scene, camera, 9))[4 * 40];
+    const before = await middle();
+    const shadows = new BABYLON.ShadowGenerator(256, lamp);
+    shadows.addShadowCaster(caster);
+    await middle();
+    const after = await middle();
+    scene.dispose();
+    return [before, after];
+  });
+  assert.ok(lit > 0.3 && shaded < 0.1 * lit, `${lit} ${shaded}`);
+});
+
 test('points and spots light as they do in the library, those that do not reach a mesh not', async () => {
   const at = await inPage(async () => {
     const results = [];

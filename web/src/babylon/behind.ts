@@ -5,8 +5,15 @@ import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTa
 import type { AbstractMesh } from '@babylonjs/core/Meshes/abstractMesh.js';
 import type { Scene } from '@babylonjs/core/scene.js';
 
-const looksThrough = ({ material }: AbstractMesh): boolean =>
-  Boolean((material as { looksThrough?: boolean } | null)?.looksThrough || (material as { subSurface?: { isRefractionEnabled: boolean } } | null)?.subSurface?.isRefractionEnabled);
+/** Ours, or one of Babylon.js's own. */
+interface Glass {
+  looksThrough?: boolean;
+  subSurface?: { isRefractionEnabled: boolean };
+}
+function looksThrough(mesh: AbstractMesh): boolean {
+  const material = mesh.material as Glass | null;
+  return Boolean(material?.looksThrough || material?.subSurface?.isRefractionEnabled);
+}
 
 const targets = new WeakMap<Scene, RenderTargetTexture>();
 const kSamples = 4;

@@ -75,7 +75,8 @@ export class LacquerExtension implements IGLTFLoaderExtension {
     if (!this.ours.has(material)) return null;
     const made = material as LacquerMaterial;
     return Promise.all(made.textureSlots().map(async (slot) => {
-      const picture = await this.picture(context, slot).catch((error) => this.warn('picture-missing', `${context}/${slot.name}`, String(error)));
+      const missing = (error: unknown) => this.warn('picture-missing', `${context}/${slot.name}`, String(error));
+      const picture = await this.picture(context, slot).catch(missing);
       if (picture) made.setTexture(slot.name, asSlot(picture, slot));
     })).then(() => undefined);
   }

@@ -246,7 +246,10 @@ export class LacquerMaterial extends ShaderMaterial {
     const on = Object.entries(colors).filter(([, value]) => value !== false && value !== undefined);
     Object.assign(this.options, {
       attributes: made.attributes, uniforms, samplers, uniformBuffers: this.blocksOf(made).names,
-      defines: [`LACQUER_${made.shader.id.replace(/\W/g, '_')}`, ...made.defines, ...on.map(([name, value]) => (value === true ? name : `${name} ${value}`))],
+      defines: [
+        `LACQUER_${made.shader.id.replace(/\W/g, '_')}`, ...made.defines,
+        ...on.map(([name, value]) => (value === true ? name : `${name} ${value}`)),
+      ],
     });
     this.shaderPath = made.source;
     return super.isReady(mesh, useInstances, subMesh);
