@@ -246,7 +246,9 @@ test('numbers change without a program, and what was made is given back', async 
     const camera = cameraOf(scene);
     lampOf(scene);
     const mesh = quadOf(scene);
-    const look = { pbrMetallicRoughness: { metallicFactor: 0 }, extensions: { KHR_materials_clearcoat: { clearcoatFactor: 1 } } };
+    // Programs of other tests are kept: no other one has this material's.
+    const extensions = { KHR_materials_clearcoat: { clearcoatFactor: 0.5 }, KHR_materials_sheen: { sheenColorFactor: [0.05, 0, 0] } };
+    const look = { pbrMetallicRoughness: { metallicFactor: 0 }, emissiveFactor: [0.01, 0, 0], extensions };
     mesh.material = new BABYLON.StandardMaterial('theirs', scene); // what Babylon.js makes for a mesh of any material
     await colours(scene, camera);
     mesh.material = lacquered.materialFrom(lacquer, look, scene);
