@@ -40,10 +40,10 @@ function copyExample(example, place) {
 async function makePackage() {
   const folder = join(output, 'package');
   mkdirSync(folder, { recursive: true });
-  for (const [name, source] of Object.entries({ index: 'index', gltf: 'gltf', webgpu: 'webgpu', three: 'three/index' })) {
+  for (const [name, source] of Object.entries({ index: 'index', gltf: 'gltf', webgpu: 'webgpu', three: 'three/index', babylon: 'babylon/index' })) {
     await build({
       entryPoints: [join(here, `src/${source}.ts`)], outfile: join(folder, `${name}.js`), bundle: true, format: 'esm', target: 'es2022',
-      external: ['./packed.js', 'three'],
+      external: ['./packed.js', 'three', '@babylonjs/*'],
     });
   }
   tsc('-p', '.', '--noEmit');
@@ -51,7 +51,7 @@ async function makePackage() {
   copyFileSync(wasm, join(folder, 'lacquer.wasm'));
   writeFileSync(join(folder, 'packed.js'), `export default '${packed}';\n`);
   for (const file of ['package.json', 'README.md']) copyFileSync(join(here, 'package', file), join(folder, file));
-  for (const example of ['webgl2', 'webgpu', 'three']) copyExample(example, join(folder, 'examples', example));
+  for (const example of ['webgl2', 'webgpu', 'three', 'babylon']) copyExample(example, join(folder, 'examples', example));
   copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));
 }
 

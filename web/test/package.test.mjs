@@ -88,7 +88,7 @@ test('the WebGL 2 example draws a .glb where its nodes are', async () => {
 });
 
 test('the examples have a hundred lines at most', () => {
-  for (const example of ['webgl2', 'webgpu', 'three']) {
+  for (const example of ['webgl2', 'webgpu', 'three', 'babylon']) {
     const lines = read(`web/examples/${example}/main.js`).toString().trimEnd().split('\n');
     assert.ok(lines.length <= 100 && lines.every((line) => line.length <= 150), `${example}: ${lines.length} lines`);
   }
@@ -239,7 +239,7 @@ test('its tarball has a README, examples of this version and the module once', (
   const paths = files.map(({ path }) => path);
   assert.equal(name, '@lacquer-shaders/lacquer');
   assert.deepEqual(paths.filter((path) => path.endsWith('.wasm')), ['lacquer.wasm']);
-  for (const path of ['README.md', 'LICENSE', 'index.d.ts', 'examples/webgl2/index.html', 'examples/webgpu/main.js', 'three.js', 'three/index.d.ts']) assert.ok(paths.includes(path), path);
+  for (const path of ['README.md', 'LICENSE', 'index.d.ts', 'examples/webgl2/index.html', 'examples/webgpu/main.js', 'three.js', 'three/index.d.ts', 'babylon.js', 'babylon/index.d.ts']) assert.ok(paths.includes(path), path);
   const example = JSON.parse(readFileSync(join(output, 'package/examples/webgl2/package.json'), 'utf8'));
   assert.deepEqual(example.dependencies, { [name]: `^${version}` });
 });

@@ -1,12 +1,13 @@
 // Lacquer's materials in three.js, as web/package-lock.json has it: their colours beside the library's own, and what a
 // renderer's scene brings along.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { kPatience, kSlow, launch, listen, serve } from './browser.mjs';
 import { inputs, output, read, realFiles, root } from './native.mjs';
+import { assertAlike, drawnFiles } from './renderers.mjs';
 
 const kModules = {
   three: './node_modules/three/build/three.module.js',
@@ -18,8 +19,6 @@ const kPage = `<!doctype html><meta charset="utf-8"><title>three</title><link re
 <script type="importmap">${JSON.stringify({ imports: kModules })}</script>
 <canvas width="64" height="64"></canvas><script type="module" src="harness.js"></script>`;
 
-/** Bytes of the real files that are drawn: larger ones take software minutes. */
-const kLargest = 2 ** 21;
 /** What GLTFLoader says of what it does not know itself. */
 const kLoaders = /^THREE.GLTFLoader: Unknown extension|GPU stall/;
 
@@ -138,19 +137,6 @@ async function besideTheLibrary({ text, material, texel, environment }) {
   const { rgba } = graph.evaluate(points, { texels, ibl: false });
   mesh.material.dispose();
   return { drawn, expected: rgba.flat(), names: graph.textures().map(({ name }) => name), lod: mesh.material.looksThrough };
-}
-
-/** Floats may be off where a highlight is steep; nearly all of it is alike to what logarithms of software are good for. */
-function assertAlike(drawn, expected, what) {
-  const off = [];
-  for (let i = 0; i < expected.length; ++i) {
-    if (i % 4 === 3) continue;
-    const error = Math.abs(drawn[i] - expected[i]) / (1 + Math.abs(expected[i]));
-    assert.ok(error < 0.02, `${what}: component ${i} is ${drawn[i]}, not ${expected[i]}`);
-    off.push(error);
-  }
-  const middle = off.sort((a, b) => a - b)[Math.floor(off.length / 2)];
-  assert.ok(middle < 5e-4, `${what}: off by ${middle} in the middle`);
 }
 
 test('materials have the colours of the library under a lamp', async () => {
@@ -534,16 +520,8 @@ test('GLTFLoader with the plugin draws every example', async () => {
   assert.ok(kinds.every(Boolean) && lit);
 });
 
-/** All that it names is beside it. */
-function isWhole(file) {
-  if (file.endsWith('.glb')) return true;
-  const { buffers = [], images = [] } = JSON.parse(read(file));
-  const names = [...buffers, ...images].map(({ uri }) => uri).filter((uri) => uri && !uri.startsWith('data:'));
-  return names.every((uri) => existsSync(join(dirname(file), decodeURIComponent(uri))));
-}
-
 test('GLTFLoader with the plugin draws real files', async (t) => {
-  const files = realFiles().filter((file) => statSync(file).size < kLargest && isWhole(file));
+  const files = drawnFiles();
   if (files.length === 0) return t.skip('there is no assets folder');
   for (const file of files) {
     const place = `${basename(dirname(file))}/${basename(file)}`;

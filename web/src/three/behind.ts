@@ -3,6 +3,7 @@ import {
   HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Matrix4, NoToneMapping, Vector2, WebGLRenderTarget, type Camera, type Material,
   type Mesh, type Object3D, type Scene, type Texture, type WebGLRenderer,
 } from 'three';
+import { behindValues } from '../renderers/shader.js';
 import type { Values } from '../types.js';
 
 const looksThrough = (object: Object3D): boolean => {
@@ -63,14 +64,5 @@ export function sceneBehind(renderer: WebGLRenderer, scene: Scene, camera: Camer
     Object.assign(behind, { frame: renderer.info.render.frame, camera });
   }
   const m = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
-  const row = (make: (x: number, y: number, w: number) => number) => [0, 1, 2, 3].map((i) => make(m[4 * i], m[4 * i + 1], m[4 * i + 3]));
-  return {
-    texture: target.texture,
-    values: {
-      scene_u: row((x, _, w) => (x + w) / 2),
-      scene_v: row((_, y, w) => (y + w) / 2),
-      scene_w: row((_x, _y, w) => w),
-      scene_max_lod: Math.floor(Math.log2(Math.max(target.width, target.height))),
-    },
-  };
+  return { texture: target.texture, values: behindValues(m, target.width, target.height) };
 }

@@ -4,6 +4,7 @@ import {
   type Texture,
 } from 'three';
 import type { Lacquer } from '../index.js';
+import { filtered, kForm, kTable, radianceOf, tablesFor, type Cube } from '../renderers/environment.js';
 import type { EnvironmentForm } from '../types.js';
 
 /** What surrounds a scene, for setEnvironment() or a material. */
@@ -14,21 +15,9 @@ export interface Environment {
   dispose(): void;
 }
 
-const kHalfTexel = 8;
-
-/** A cube of half floats, in KTX2, as the library writes it: from the largest level on. */
-function cubeOf(file: Uint8Array): CubeTexture {
-  const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
-  const edge = view.getUint32(20, true);
-  const levels = Array.from({ length: view.getUint32(40, true) }, (_, level) => {
-    const size = edge >> level;
-    const start = Number(view.getBigUint64(80 + 24 * level, true));
-    return Array.from({ length: 6 }, (_face, face) => {
-      const at = start + face * size * size * kHalfTexel;
-      const texels = new Uint16Array(file.slice(at, at + size * size * kHalfTexel).buffer);
-      return new DataTexture(texels, size, size, RGBAFormat, HalfFloatType);
-    });
-  });
+function cubeOf({ edge, levels: texels }: Cube): CubeTexture {
+  const levels = texels.map((faces, level) =>
+    faces.map((face) => new DataTexture(face, edge >> level, edge >> level, RGBAFormat, HalfFloatType)));
   const cube = new CubeTexture(levels[0] as unknown as HTMLImageElement[]);
   cube.format = RGBAFormat;
   cube.type = HalfFloatType;
@@ -41,23 +30,19 @@ function cubeOf(file: Uint8Array): CubeTexture {
 }
 
 /** A table of pairs from 0 to 1. */
-function tableOf(pairs: Float32Array, size: number): DataTexture {
-  const table = new DataTexture(Uint16Array.from(pairs, (x) => DataUtils.toHalfFloat(x)), size, size, RGFormat, HalfFloatType);
+function tableOf(pairs: Float32Array): DataTexture {
+  const table = new DataTexture(Uint16Array.from(pairs, (x) => DataUtils.toHalfFloat(x)), kTable, kTable, RGFormat, HalfFloatType);
   table.magFilter = table.minFilter = LinearFilter;
   table.needsUpdate = true;
   return table;
 }
 
-const kTable = 64;
 const tables = new WeakMap<Lacquer, Record<string, Texture>>();
 /** What lobes reflect, which holds in all surroundings. */
 export function tablesOf(lacquer: Lacquer): Record<string, Texture> {
   let made = tables.get(lacquer);
   if (!made) {
-    made = {
-      environment_dfg: tableOf(lacquer.environmentDfg(kTable), kTable),
-      environment_sheen: tableOf(lacquer.environmentSheen(kTable), kTable),
-    };
+    made = Object.fromEntries(Object.entries(tablesFor(lacquer)).map(([name, pairs]) => [name, tableOf(pairs)]));
     tables.set(lacquer, made);
   }
   return made;
@@ -68,42 +53,26 @@ export function tablesOf(lacquer: Lacquer): Record<string, Texture> {
 export function environmentOf(
   lacquer: Lacquer,
   picture: Uint8Array | ArrayBuffer | Texture,
-  form: EnvironmentForm = { size: 64, samples: 64 },
+  form: EnvironmentForm = kForm,
 ): Environment {
   const file = picture instanceof ArrayBuffer ? new Uint8Array(picture) : picture;
-  const bytes = file instanceof Uint8Array ? file : radianceOf(file);
-  const { files, environment_max_lod } = lacquer.environment(bytes, 'environment.hdr', { ...form, dds: false, shared_exponents: false });
-  const textures: Record<string, Texture> = {};
-  for (const slot of ['environment_specular', 'environment_irradiance', 'environment_charlie']) {
-    if (files[slot]) textures[slot] = cubeOf(files[slot]);
-  }
+  const bytes = file instanceof Uint8Array ? file : radiance(file);
+  const { cubes, levels } = filtered(lacquer, bytes, form);
+  const textures: Record<string, Texture> = Object.fromEntries(Object.entries(cubes).map(([slot, cube]) => [slot, cubeOf(cube)]));
   return {
     textures,
-    levels: environment_max_lod,
+    levels,
     dispose: () => Object.values(textures).forEach((texture) => texture.dispose()),
   };
 }
 
 /** The floats of an equirectangular texture as a picture in Radiance HDR. */
-function radianceOf(texture: Texture): Uint8Array {
+function radiance(texture: Texture): Uint8Array {
   const { data, width, height } = (texture?.image ?? {}) as { data?: ArrayLike<number>; width: number; height: number };
   const half = texture?.type === HalfFloatType;
   if (!data || data.length !== 4 * width * height || (!half && texture.type !== FloatType))
     throw new TypeError('an environment is the bytes of a Radiance picture, or an equirectangular texture of RGBA floats as HDRLoader makes it');
-  const head = new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
-  const bytes = new Uint8Array(head.length + 4 * width * height);
-  bytes.set(head);
-  const at = (i: number) => Math.max(half ? DataUtils.fromHalfFloat(data[i]) : data[i], 0);
-  for (let texel = 0; texel < width * height; ++texel) {
-    const rgb = [at(4 * texel), at(4 * texel + 1), at(4 * texel + 2)];
-    const most = Math.max(...rgb);
-    if (!(most > 1e-32)) continue;
-    const exponent = Math.floor(Math.log2(most)) + 1;
-    const to = head.length + 4 * texel;
-    rgb.forEach((x, i) => (bytes[to + i] = Math.min(Math.floor((x * 256) / 2 ** exponent), 255)));
-    bytes[to + 3] = exponent + 128;
-  }
-  return bytes;
+  return radianceOf(width, height, (i) => (half ? DataUtils.fromHalfFloat(data[i]) : data[i]));
 }
 
 const kNothing = (): Environment => {

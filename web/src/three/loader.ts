@@ -1,6 +1,7 @@
 // A plugin of three.js's GLTFLoader: the meshes of a file get Lacquer's materials.
 import { MeshBasicMaterial, TextureLoader, type Group, type Material, type Mesh, type Object3D, type Texture } from 'three';
 import type { Lacquer, Scene as LacquerScene } from '../index.js';
+import { materialsAlone, swizzledImage, toConsole, unlessTold } from '../renderers/file.js';
 import type { GraphTexture, Message, Options } from '../types.js';
 import { asSlot, attributesOf, LacquerMaterial, withStates } from './material.js';
 
@@ -14,23 +15,10 @@ interface Parser {
   loadTextureImage(texture: number, source: number, loader: unknown): Promise<Texture | null>;
 }
 
-/** Extensions of a file's buffers, which the loader has undone: what is in the materials' way is left out of the JSON. */
-const kGeometry = new Set([
-  'KHR_draco_mesh_compression', 'EXT_meshopt_compression', 'KHR_meshopt_compression', 'KHR_mesh_quantization', 'EXT_mesh_gpu_instancing',
-]);
-
-/** Of an image that a browser decodes. */
-const kChannels = 4;
-
 export interface PluginOptions {
   options?: Options;
   /** Is told what the library says of the materials; without it warnings and errors go to the console. */
   onMessage?: (message: Message) => void;
-}
-
-function toConsole({ level, text }: Message): void {
-  if (level === 'error') console.error(text);
-  else if (level === 'warning') console.warn(text);
 }
 
 /** `loader.register((parser) => new LacquerPlugin(parser, lacquer))`: every extension that the library knows is drawn. A material
@@ -61,10 +49,8 @@ export class LacquerPlugin {
 
   /** NV_texture_swizzle: the image whose channels the shader takes. Null: the texture is three.js's. */
   loadTexture(index: number): Promise<Texture | null> | null {
-    const { source, extensions } = this.parser.json.textures[index];
-    const options: { source: number; channels: number[] }[] = extensions?.NV_texture_swizzle?.options ?? [];
-    const image = options.find(({ channels }) => channels.every((channel) => channel < kChannels));
-    return source === undefined && image ? this.parser.loadTextureImage(index, image.source, this.parser.textureLoader) : null;
+    const image = swizzledImage(this.parser.json.textures[index]);
+    return image === undefined ? null : this.parser.loadTextureImage(index, image, this.parser.textureLoader);
   }
 
   async afterRoot(result: { scenes: Group[] }): Promise<void> {
@@ -102,7 +88,7 @@ export class LacquerPlugin {
     const messages: Message[] = [];
     let material: LacquerMaterial | null = null;
     try {
-      this.file ??= this.lacquer.scene(JSON.stringify(this.materialsAlone()), 'scene.gltf', this.options, messages);
+      this.file ??= this.lacquer.scene(JSON.stringify(materialsAlone(this.parser.json)), 'scene.gltf', this.options, messages);
       const graph = this.file.graph(index, this.options, attributesOf(mesh), messages);
       const slots = graph.textures();
       const pictures = await Promise.all(slots.map((slot) => this.picture(slot)));
@@ -110,23 +96,10 @@ export class LacquerPlugin {
       material = new LacquerMaterial(this.lacquer, graph, { textures, options: this.options, messages });
       withStates(material, this.parser.json.materials?.[index] ?? {});
     } catch (error) {
-      if (!Array.isArray((error as { messages?: unknown }).messages)) throw error;
+      unlessTold(error);
     }
     messages.forEach(this.tell);
     return material;
-  }
-
-  /** The file without its geometry. */
-  private materialsAlone(): object {
-    const { asset, extensionsUsed, extensionsRequired, extensions, materials, textures, images, samplers } = this.parser.json;
-    const shown = (names?: string[]) => names?.filter((name) => !kGeometry.has(name));
-    return {
-      asset, textures, samplers, extensions,
-      materials: [...(materials ?? []), {}], // the last is glTF's default
-      // Pictures in buffers are the loader's.
-      images: images?.map((image: any, i: number) => (image.uri?.startsWith('data:') || !image.uri ? { uri: `${i}.png` } : image)),
-      extensionsUsed: shown(extensionsUsed), extensionsRequired: shown(extensionsRequired),
-    };
   }
 
   private async picture(slot: GraphTexture): Promise<Texture | null> {

@@ -4,8 +4,10 @@ import {
   NearestFilter, Quaternion, RepeatWrapping, RGBAFormat, ShaderMaterial, SRGBColorSpace, UniformsLib, UniformsUtils, Vector2, type BufferAttribute,
   type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
 } from 'three';
-import type { Graph, Lacquer, Shader } from '../index.js';
-import type { Attribute, Field, GraphTexture, Interface, Message, Options, Parameter, Values } from '../types.js';
+import type { Graph, Lacquer } from '../index.js';
+import type { Attribute, Field, GraphTexture, Message, Options, Parameter, Values } from '../types.js';
+import { fileOf } from '../renderers/file.js';
+import { changedNumbers, clockValues, esslOf, type Essl } from '../renderers/shader.js';
 import { environmentIn, tablesOf, type Environment } from './environment.js';
 import { lightsOf } from './lights.js';
 import { sceneBehind } from './behind.js';
@@ -55,29 +57,18 @@ const standIn = (content?: string): Texture =>
   content === 'normal' ? (flat ??= texel([128, 128, 255, 255])) : (white ??= texel([255, 255, 255, 255]));
 
 /** What is made of a graph once, and shared by clones. */
-interface Made {
+interface Made extends Essl {
   graph: Graph;
-  shader: Shader;
-  interface: Interface;
   /** The uniforms that blocks are. */
   instances: Map<string, string>;
-  text: Record<'vertex' | 'fragment', string>;
 }
 
-/** Of blocks without a size: lists of any length. */
-const kLists = ['lights', 'list'];
-
 function make(graph: Graph, options: Options, messages: Message[]): Made {
-  const shader = graph.generate({ ...options, targets: ['essl'] }, messages);
-  const about = shader.interface;
-  const [color] = (about.outputs ?? []) as { type: string }[];
-  if (!shader.hasVertexStage || color?.type !== 'vec4' || about.uniforms.some(({ role, array }) => !array && kLists.includes(role)))
-    throw new TypeError(`three.js draws the templates forward, forward_area and what extends them, not ${about.template}`);
-  const essl = { vertex: shader.text('essl', 'vertex'), fragment: shader.text('essl', 'fragment') };
+  const { text: essl, ...rest } = esslOf(graph, options, messages, 'three.js');
   return {
-    graph, shader, interface: about,
+    ...rest, graph,
     instances: new Map([...instancesOf(essl.vertex), ...instancesOf(essl.fragment)]),
-    text: { vertex: threeText(essl.vertex, 'vertex', about), fragment: threeText(essl.fragment, 'fragment', about) },
+    text: { vertex: threeText(essl.vertex, 'vertex', rest.interface), fragment: threeText(essl.fragment, 'fragment', rest.interface) },
   };
 }
 
@@ -136,13 +127,7 @@ export class LacquerMaterial extends ShaderMaterial {
   /** Gives parameters other values: no program is made for it. Throws, and changes nothing, where a name is no parameter's or a
    * value no number. Values beyond a range are its ends. */
   set(values: Record<string, number | ArrayLike<number>>): void {
-    const known = new Set(this.made.graph.parameters().map(({ name }) => name));
-    const changed = { ...this.values };
-    for (const [name, value] of Object.entries(values)) {
-      if (!known.has(name)) throw new RangeError(`the material has no parameter ${name}; it has ${[...known].join(', ') || 'none'}`);
-      changed[name] = typeof value === 'number' ? [value] : Array.from(value ?? []);
-      if (!changed[name].length || !changed[name].every(Number.isFinite)) throw new TypeError(`${name}: ${value} is no number, and no array of them`);
-    }
+    const changed = changedNumbers(this.made.graph.parameters(), this.values, values);
     const block = this.made.interface.uniforms.find(({ block }) => block === 'Material');
     const bytes = block ? this.made.shader.pack(changed) : new Uint8Array();
     this.values = changed;
@@ -202,7 +187,7 @@ export class LacquerMaterial extends ShaderMaterial {
       const turn = new Quaternion().setFromEuler(environmentRotation).invert();
       this.fill('EnvironmentTurn', { rotation: turn.toArray() });
     }
-    this.fill('Clock', { time: (performance.now() / 1000) % kLongestTime, frame: frame % kLongestTime });
+    this.fill('Clock', clockValues(frame));
     if (this.looksThrough) {
       const { texture, values } = sceneBehind(renderer, scene, camera);
       this.uniforms.scene_behind.value = texture;
@@ -232,8 +217,6 @@ export class LacquerMaterial extends ShaderMaterial {
   }
 }
 
-/** A float counts whole numbers to here. */
-const kLongestTime = 16_777_216;
 const kMostTargets = 8;
 const kRow = 1024;
 
@@ -311,9 +294,7 @@ export function materialFrom(
   mesh: Mesh,
   { textures = [], options = {}, messages = [] }: { textures?: Texture[]; options?: Options; messages?: Message[] } = {},
 ): LacquerMaterial {
-  const images = textures.map((_, i) => ({ uri: `${i}.png` }));
-  const file = { asset: { version: '2.0' }, materials: [json], images, textures: textures.map((_, source) => ({ source })) };
-  const scene = lacquer.scene(JSON.stringify(file), 'material.gltf', options, messages);
+  const scene = lacquer.scene(JSON.stringify(fileOf(json, textures.length)), 'material.gltf', options, messages);
   try {
     const graph = scene.graph(0, options, attributesOf(mesh), messages);
     const slots = Object.fromEntries(graph.textures().map((slot) => [slot.name, asSlot(textures[slot.texture], slot)]));

@@ -1,5 +1,6 @@
 // The text of a shader as three.js takes it: three.js declares the vertex attributes that it knows, sets plain uniforms and no
 // blocks, and has a main() that ends with what the renderer does to colours.
+import { asFunction, kBlock, kInput, semanticOf } from '../renderers/text.js';
 import type { Interface } from '../types.js';
 
 /** The names that three.js's geometries have for glTF's attributes. `under`: the define under which three.js declares it; an
@@ -31,9 +32,6 @@ const kInstances = [
   '#endif',
 ];
 
-const kBlock = /^layout\(std140\) uniform (\w+) \{\n((?: {4}.*\n)*)\}(?: (\w+))?;$/gm;
-const kInput = /^(?:layout\(location = (\d+)\) )in (\w+) (in_\w+);$/gm;
-
 /** Declares what three.js does not, in the place of a block or an attribute, and says with what the variable that stands for it
  * is filled. */
 class Rewriting {
@@ -41,7 +39,7 @@ class Rewriting {
   constructor(private readonly vertex: boolean, private readonly shader: Interface) {}
 
   input = (_: string, location: string, type: string, variable: string): string => {
-    const semantic = this.shader.inputs?.find((input) => input.location === Number(location))?.name ?? variable;
+    const semantic = semanticOf(this.shader, location, variable);
     if (semantic === 'MORPH_VERTEX') {
       this.fill.push(`${variable} = ${type}(gl_VertexID);`);
       return `${type} ${variable};`;
@@ -91,7 +89,7 @@ export function instancesOf(essl: string): Map<string, string> {
 export function threeText(essl: string, stage: 'vertex' | 'fragment', shader: Interface): string {
   const vertex = stage === 'vertex';
   const to = new Rewriting(vertex, shader);
-  const bare = essl.replace(/^#version.*\n/, '').replace('void main() {', 'void surface() {');
+  const bare = asFunction(essl);
   const text = (vertex ? bare.replace(kInput, to.input) : bare).replace(kBlock, to.block);
   const main = ['void main() {', ...to.fill.map((line) => (line.startsWith('#') ? line : `    ${line}`)), '    surface();'];
   if (vertex) {
