@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "environment/faces.h"
@@ -45,21 +47,39 @@ public:
   /// N.L: irradiance.
   static Lobe cosine();
 
-  /// Up to a factor, of a cosine in (0, 1].
-  double operator()(double cosine) const;
-  /// The squared distance over which the lobe hardly changes, of a chord on the unit sphere, about a cosine.
-  double scale2(double cosine) const;
+  enum class Kind : uint8_t { Ggx, Charlie, Cosine };
+  Kind kind() const { return kind_; }
+  double alpha() const { return alpha_; }
+
+  /// The squared distance over which the lobe hardly changes, of a chord on the unit sphere: the least of
+  /// cosines from `low` to `high`.
+  double scale2(double low, double high) const;
+  /// The cosine from which on it is so small that nothing there counts: below 1e-8 of its most.
+  double end() const;
 
 private:
-  enum class Kind : uint8_t { Ggx, Charlie, Cosine };
   Lobe(Kind kind, double alpha) : kind_(kind), alpha_(alpha) {}
   Kind kind_;
   double alpha_;
 };
 
-/// The mean of the radiance about a unit direction, weighted by a lobe: the integral of both over that of the
-/// lobe. Cells are cut until they are `fineness` of the distance over which the lobe changes, which makes
-/// about 64 / fineness^2 of them.
-Rgb filtered(const LightTree& tree, const Lobe& lobe, const Vec3& direction, double fineness);
+/// Directions that are filtered together: neighbours, whose lobes want nearly the same cells.
+inline constexpr size_t kTogether = 16;
+
+/// The mean of the radiance about a direction, weighted by a lobe: the integral of both over that of the
+/// lobe.
+class Filter {
+public:
+  using Run = std::function<void(std::span<const Vec3> directions, std::span<Rgb> means)>;
+
+  /// Cells are cut until they are `fineness` of the distance over which the lobe changes, which makes about
+  /// 64 / fineness^2 of them. The tree must outlive this.
+  Filter(const LightTree& tree, const Lobe& lobe, double fineness);
+  /// Of unit directions, at most kTogether of them: cells are as fine as any of them wants. Thread-safe.
+  void operator()(std::span<const Vec3> directions, std::span<Rgb> means) const;
+
+private:
+  Run run_;
+};
 
 }  // namespace lacquer::environment

@@ -17,12 +17,16 @@ constexpr uint32_t kCharliePart = 4;     ///< its size is this part of the specu
 constexpr uint32_t kFinestTree = 512;    ///< where the cube is not larger itself
 constexpr double kCosineFineness = 0.1;  ///< of the irradiance: an error of 1e-4
 
-/// What one row of texels is: of a cube, its face and its number in it.
-struct Row {
+/// Texels of a square that are filtered together, along a side.
+constexpr uint32_t kSide = 4;
+static_assert(kSide * kSide == kTogether);
+
+/// What some rows of texels are: of a cube, the first of them and how many.
+struct Rows {
   texture::CubeLevel* level;
-  const Lobe* lobe;  ///< null: the mirror
-  double fineness;
-  uint32_t row;  ///< of all faces
+  const Filter* filter;  ///< null: the mirror
+  uint32_t first;        ///< of all faces
+  uint32_t count;        ///< the side of the squares that are filtered together
 };
 
 /// The mean of the tree's cells that a texel of a mirror's level covers.
@@ -33,14 +37,26 @@ Rgb mirrored(const LightTree& tree, size_t texel, uint32_t size) {
   return mean;
 }
 
-void fill(const LightTree& tree, const Row& row) {
-  const uint32_t size = row.level->size;
-  const uint32_t face = row.row / size, y = row.row % size;
-  for (uint32_t x = 0; x < size; ++x) {
-    const size_t texel = size_t{row.row} * size + x;
-    row.level->texels[texel] =
-        row.lobe == nullptr ? mirrored(tree, texel, size)
-                            : filtered(tree, *row.lobe, texelDirection(face, x, y, size), row.fineness);
+void fill(const LightTree& tree, const Rows& rows) {
+  const uint32_t size = rows.level->size;
+  std::vector<Rgb>& texels = rows.level->texels;
+  if (rows.filter == nullptr) {
+    const size_t begin = size_t{rows.first} * size;
+    for (size_t texel = begin; texel < begin + size_t{rows.count} * size; ++texel)
+      texels[texel] = mirrored(tree, texel, size);
+    return;
+  }
+  const uint32_t face = rows.first / size;
+  for (uint32_t left = 0; left < size; left += rows.count) {
+    const uint32_t width = rows.count;
+    std::array<Vec3, kTogether> directions{};
+    std::array<Rgb, kTogether> means{};
+    const uint32_t count = width * rows.count;
+    for (uint32_t i = 0; i < count; ++i)
+      directions[i] = texelDirection(face, left + i % width, rows.first % size + i / width, size);
+    (*rows.filter)(std::span(directions).first(count), std::span(means).first(count));
+    for (uint32_t i = 0; i < count; ++i)
+      texels[(size_t{rows.first} + i / width) * size + left + i % width] = means[i];
   }
 }
 
@@ -48,18 +64,20 @@ class Making {
 public:
   Making(const LightTree& tree, const MapOptions& options, Maps& maps) : tree_(tree), maps_(maps) {
     const double fineness = 8 / std::sqrt(static_cast<double>(options.samples));
+    // Light that is near the middle of its lobe costs little and shows the most.
+    const double finer = 0.9 * fineness;
     const auto last = static_cast<uint32_t>(std::countr_zero(options.size / kSmallestLevel));
-    lobes_.reserve(2 * last + 3);
+    filters_.reserve(2 * last + 3);
     maps.specular.resize(last + 1);
     maps.charlie.resize(last + 1);
     for (uint32_t i = 0; i <= last; ++i) {
       const double roughness = static_cast<double>(i) / last;
-      add(maps.specular[i], options.size >> i, i == 0 ? nullptr : &lobes_.emplace_back(Lobe::ggx(roughness)),
-          fineness);
-      add(maps.charlie[i], options.size / kCharliePart >> i, &lobes_.emplace_back(Lobe::charlie(roughness)),
-          fineness);
+      add(maps.specular[i], options.size >> i,
+          i == 0 ? nullptr : &filters_.emplace_back(tree, Lobe::ggx(roughness), finer));
+      add(maps.charlie[i], options.size / kCharliePart >> i,
+          &filters_.emplace_back(tree, Lobe::charlie(roughness), fineness));
     }
-    add(maps.irradiance, kIrradianceSize, &lobes_.emplace_back(Lobe::cosine()), kCosineFineness);
+    add(maps.irradiance, kIrradianceSize, &filters_.emplace_back(tree, Lobe::cosine(), kCosineFineness));
   }
 
   void run(const MapProgress& progress) {
@@ -69,16 +87,18 @@ public:
       fill(tree_, rows_[i]);
       if (!progress) return;
       const std::lock_guard lock(mutex);
-      progress(++done, rows_.size());
+      progress(done += rows_[i].count, known_);
     });
     harmonics();
   }
 
 private:
-  void add(texture::CubeLevel& level, uint32_t size, const Lobe* lobe, double fineness) {
+  void add(texture::CubeLevel& level, uint32_t size, const Filter* filter) {
     level.size = size;
     level.texels.resize(size_t{kFaces} * size * size);
-    for (uint32_t row = 0; row < kFaces * size; ++row) rows_.push_back({&level, lobe, fineness, row});
+    const uint32_t count = std::min(kSide, size);
+    for (uint32_t row = 0; row < kFaces * size; row += count) rows_.push_back({&level, filter, row, count});
+    known_ += size_t{kFaces} * size;
   }
 
   void harmonics() {
@@ -95,8 +115,9 @@ private:
 
   const LightTree& tree_;
   Maps& maps_;
-  std::vector<Lobe> lobes_;
-  std::vector<Row> rows_;
+  std::vector<Filter> filters_;
+  std::vector<Rows> rows_;
+  size_t known_ = 0;  ///< rows of texels
 };
 
 /// The texel of a place that may lie beside its face by one.

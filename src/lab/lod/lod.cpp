@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "cost/cost.h"
 #include "interface/interface.h"
@@ -293,6 +295,7 @@ private:
     lod::shareInterface(modules);
     if (Result<void> measured = measureLevels(subject, modules, made); !measured) return measured;
     uniformsOf(modules[0], made);
+    ExactShots exact;
     for (size_t i = 0; i < made.found.levels.size(); ++i) {
       Level& level = made.found.levels[i];
       level.screen_size = screenOf(i, made.found.levels.size());
@@ -300,14 +303,14 @@ private:
       LevelPictures& pictures = made.pictures.emplace_back();
       if (i == 0) continue;
       const std::string path = fmt::format("pictures/{}-{}", stem, i);
-      if (Result<void> good = draw(subject, path, level, pictures); !good) return good;
+      if (Result<void> good = draw(subject, path, level, exact, pictures); !good) return good;
     }
     return {};
   }
 
   /// A level whose own shader, with the shared block, does not cost less than the one before is none.
   static Result<void> measureLevels(LodMaterial& subject, std::vector<ir::Module>& modules, LodChain& made) {
-    Result<std::vector<LevelFigures>> costs = subject.costs(modules);
+    Result<std::vector<LevelFigures>> costs = subject.costs(modules, true);
     if (!costs) return tl::make_unexpected(std::move(costs.error()));
     std::vector<Level> levels;
     std::vector<ir::Module> kept;
@@ -365,19 +368,27 @@ private:
     return {};
   }
 
-  Result<void> draw(const LodMaterial& subject, const std::string& stem, Level& level,
+  /// Of the exact shader, by size and whether they are of triangles: several levels are seen beside one.
+  using ExactShots = std::map<std::pair<uint32_t, bool>, std::vector<preview::Shot>>;
+
+  Result<void> draw(const LodMaterial& subject, const std::string& stem, Level& level, ExactShots& known,
                     LevelPictures& pictures) {
     for (const bool used : {false, true}) {
       const uint32_t size = used ? level.screen_size : kShown;
       const bool triangles = atVertices(level.simplify);
-      const auto exact = subject.shots({}, size, triangles);
-      if (!exact) return tl::make_unexpected(exact.error());
+      auto exact = known.find({size, triangles});
+      if (exact == known.end()) {
+        auto made = subject.shots({}, size, triangles);
+        if (!made) return tl::make_unexpected(std::move(made.error()));
+        exact = known.emplace(std::pair(size, triangles), std::move(*made)).first;
+      }
       const auto simpler = subject.shots(level.simplify, size, triangles);
       if (!simpler) return tl::make_unexpected(simpler.error());
       if (used)
-        subject.compare(*exact, *simpler, level.error_at_screen_size, level.error_on_geometry_at_screen_size);
+        subject.compare(exact->second, *simpler, level.error_at_screen_size,
+                        level.error_on_geometry_at_screen_size);
       std::string path = stem + (used ? "-used.png" : ".png");
-      pictures_.emplace_back(path, strip(*exact, *simpler));
+      pictures_.emplace_back(path, strip(exact->second, *simpler));
       (used ? pictures.used : pictures.large) = std::move(path);
     }
     return {};

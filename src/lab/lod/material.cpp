@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "cost/cost.h"
 #include "cost/quarter.h"
@@ -22,6 +23,14 @@ constexpr size_t kMostVaryings = 15;
 
 /// Pixels of the pictures that numbers are fitted to.
 constexpr uint32_t kFitSize = 32;
+
+// As in cost/cost.cpp: a child that is born while another thread allocates waits for ever with GCC's
+// address sanitizer.
+#ifdef __SANITIZE_ADDRESS__
+constexpr auto kBeside = std::launch::deferred;
+#else
+constexpr auto kBeside = std::launch::async;
+#endif
 
 /// How a texture's texel is made of an image's.
 struct Taken {
@@ -281,7 +290,7 @@ double LodMaterial::costOf(const LevelFigures& figures) const {
   return static_cast<double>(figures.cycles) + kVertexShare * static_cast<double>(more);
 }
 
-Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules) {
+Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules, bool quarters) {
   std::vector<LevelFigures> figures(modules.size());
   if (!cost::unavailable().empty()) {
     for (size_t i = 0; i < modules.size(); ++i) {
@@ -300,14 +309,15 @@ Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Modul
     if (!subject) return tl::make_unexpected(std::move(subject.error()));
     subjects.push_back(std::move(*subject));
   }
-  const cost::Measurement measured = cost::measure(subjects, cost::kFamilies[0], true);
+  const cost::Measurement measured = cost::measure(subjects, cost::kFamilies[0], quarters);
   if (!measured.driver.empty()) driver_ = measured.driver;
   for (size_t i = 0; i < figures.size(); ++i) {
     const cost::Outcome& outcome = measured.outcomes[i];
     if (!outcome.statistics) return fail("cost-unknown", {}, "no cost: " + outcome.problem);
     figures[i].instructions = outcome.statistics->instructions;
     figures[i].cycles = outcome.statistics->inverse_throughput;
-    figures[i].quarter_cycles = figures[i].cycles + cost::quarterRateCycles(outcome.disassembly);
+    if (quarters)
+      figures[i].quarter_cycles = figures[i].cycles + cost::quarterRateCycles(outcome.disassembly);
     figures[i].vertex_cycles = outcome.statistics->vertex_inverse_throughput;
     figures[i].cost = costOf(figures[i]);
   }
@@ -329,13 +339,25 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     of_fresh.emplace_back(std::move(id), &set);
     fresh.push_back(std::move(*made));
   }
-  Result<std::vector<LevelFigures>> costs = this->costs(fresh);
-  for (size_t i = 0; costs && i < fresh.size(); ++i) {
+  // The driver compiles in a process of its own: the pictures are made beside it.
+  const std::launch how = given_.options.jobs == 1 ? std::launch::deferred : kBeside;
+  std::future<Result<std::vector<LevelFigures>>> costing =
+      std::async(how, [&] { return costs(fresh, false); });
+  std::vector<LevelFigures> seen(fresh.size());
+  std::vector<bool> drawn(fresh.size(), false);
+  for (size_t i = 0; i < fresh.size(); ++i) {
     const bool triangles = atVertices(*of_fresh[i].second);
     const auto shot = shots(*of_fresh[i].second, size_, triangles);
     if (!shot) continue;
-    compare(exact_[triangles], *shot, (*costs)[i].error, (*costs)[i].error_on_geometry);
-    figures_.emplace(of_fresh[i].first, (*costs)[i]);
+    drawn[i] = true;
+    compare(exact_[triangles], *shot, seen[i].error, seen[i].error_on_geometry);
+  }
+  const Result<std::vector<LevelFigures>> costs = costing.get();
+  for (size_t i = 0; costs && i < fresh.size(); ++i) {
+    if (!drawn[i]) continue;
+    LevelFigures& figures = figures_.emplace(of_fresh[i].first, (*costs)[i]).first->second;
+    figures.error = seen[i].error;
+    figures.error_on_geometry = seen[i].error_on_geometry;
   }
   std::vector<std::optional<lod::Tried>> tried(sets.size());
   for (size_t i = 0; i < sets.size(); ++i) {

@@ -62,8 +62,9 @@ public:
   /// Of the ball in the pictures: the geometry's, where there is one.
   double radius() const { return radius_; }
 
-  /// Measures modules: cycles and instructions alone.
-  Result<std::vector<LevelFigures>> costs(const std::vector<ir::Module>& modules);
+  /// Measures modules: cycles and instructions alone. Those with roots at a quarter of the rate take the
+  /// driver half as long again, and are 0 unless `quarters`.
+  Result<std::vector<LevelFigures>> costs(const std::vector<ir::Module>& modules, bool quarters);
 
 private:
   using Change = std::function<void(ir::Module&)>;

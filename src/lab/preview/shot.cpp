@@ -56,7 +56,7 @@ double behindAt(uint32_t x, uint32_t y, uint32_t size) {
 }
 
 /// Adds the samples of one row, each with the pixel of the row that it is of.
-void addRow(const std::vector<std::array<double, 4>>& colors, const std::vector<uint32_t>& pixels, uint32_t y,
+void addRow(std::span<const std::array<double, 4>> colors, std::span<const uint32_t> pixels, uint32_t y,
             uint32_t samples, Shot& shot, std::vector<uint8_t>& hit) {
   const uint32_t size = shot.pixels.width;
   std::vector<uint32_t> hits(size, 0);
@@ -79,21 +79,37 @@ void addRow(const std::vector<std::array<double, 4>>& colors, const std::vector<
   }
 }
 
-void shootRow(const Shading& shading, double radius, uint32_t y, uint32_t grid, Shot& shot,
-              std::vector<uint8_t>& hit) {
+/// Rows that are shaded together: what a shading prepares for a call takes as long as many samples.
+uint32_t rowsTogether(uint32_t size, uint32_t grid) {
+  constexpr uint32_t kSamples = 2048;
+  return std::clamp(kSamples / (size * grid * grid), 1U, size);
+}
+
+void shootRows(const Shading& shading, double radius, uint32_t first, uint32_t end, uint32_t grid, Shot& shot,
+               std::vector<uint8_t>& hit) {
   const uint32_t size = shot.pixels.width;
   const uint32_t samples = grid * grid;
   std::vector<eval::Point> points;
   std::vector<uint32_t> pixels;
-  for (uint32_t i = 0; i < size * samples; ++i) {
-    const uint32_t x = i / samples;
-    const auto [dx, dy] = sampleOf(i % samples, grid);
-    eval::Point point;
-    if (!onFacetedBall((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, radius, point)) continue;
-    points.push_back(point);
-    pixels.push_back(x);
+  std::vector<size_t> begins;  // of the rows' points
+  for (uint32_t y = first; y < end; ++y) {
+    begins.push_back(points.size());
+    for (uint32_t i = 0; i < size * samples; ++i) {
+      const uint32_t x = i / samples;
+      const auto [dx, dy] = sampleOf(i % samples, grid);
+      eval::Point point;
+      if (!onFacetedBall((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, radius, point)) continue;
+      points.push_back(point);
+      pixels.push_back(x);
+    }
   }
-  addRow(shading(points), pixels, y, samples, shot, hit);
+  begins.push_back(points.size());
+  const std::vector<std::array<double, 4>> colors = shading(points);
+  for (uint32_t y = first; y < end; ++y) {
+    const size_t begin = begins[y - first], count = begins[y - first + 1] - begin;
+    addRow(std::span(colors).subspan(begin, count), std::span(pixels).subspan(begin, count), y, samples, shot,
+           hit);
+  }
 }
 
 Shot emptyShot(uint32_t size) {
@@ -133,7 +149,10 @@ Color heat(double x) {
 Shot shoot(const Shading& shading, double radius, uint32_t size, uint32_t grid) {
   Shot shot = emptyShot(size);
   std::vector<uint8_t> hit(size_t{size} * size, 0);
-  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) { shootRow(shading, radius, y, grid, shot, hit); });
+  const uint32_t rows = rowsTogether(size, grid);
+  tbb::parallel_for(uint32_t{0}, (size + rows - 1) / rows, [&](uint32_t i) {
+    shootRows(shading, radius, i * rows, std::min((i + 1) * rows, size), grid, shot, hit);
+  });
   noteInside(shot, hit);
   return shot;
 }
@@ -144,15 +163,23 @@ Shot shoot(const Shading& shading, const Coverage& coverage) {
   std::vector<uint8_t> hit(size_t{size} * size, 0);
   const Shading::Vertices vertices = shading.vertices(coverage.vertices, coverage.standing);
   const std::span<const Coverage::Sample> all = coverage.samples;
-  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
-    const auto before = [&](const Coverage::Sample& sample, uint32_t pixel) { return sample.pixel < pixel; };
-    const auto first = std::lower_bound(all.begin(), all.end(), y * size, before);
-    const auto last = std::lower_bound(first, all.end(), (y + 1) * size, before);
-    const auto row = all.subspan(static_cast<size_t>(first - all.begin()), static_cast<size_t>(last - first));
-    std::vector<uint32_t> pixels;
-    for (const Coverage::Sample& sample : row) pixels.push_back(sample.pixel - y * size);
-    addRow(shading.samples(row, vertices, coverage.standing), pixels, y, coverage.grid * coverage.grid, shot,
-           hit);
+  const uint32_t together = rowsTogether(size, coverage.grid);
+  const auto placeOf = [&](uint32_t y) {
+    const auto before = [](const Coverage::Sample& sample, uint32_t pixel) { return sample.pixel < pixel; };
+    return static_cast<size_t>(std::lower_bound(all.begin(), all.end(), y * size, before) - all.begin());
+  };
+  tbb::parallel_for(uint32_t{0}, (size + together - 1) / together, [&](uint32_t i) {
+    const uint32_t first = i * together, end = std::min((i + 1) * together, size);
+    const size_t begin = placeOf(first);
+    const auto samples = all.subspan(begin, placeOf(end) - begin);
+    const std::vector<std::array<double, 4>> colors = shading.samples(samples, vertices, coverage.standing);
+    for (uint32_t y = first; y < end; ++y) {
+      const size_t from = placeOf(y) - begin, count = placeOf(y + 1) - begin - from;
+      std::vector<uint32_t> pixels;
+      for (const Coverage::Sample& sample : samples.subspan(from, count))
+        pixels.push_back(sample.pixel - y * size);
+      addRow(std::span(colors).subspan(from, count), pixels, y, coverage.grid * coverage.grid, shot, hit);
+    }
   });
   noteInside(shot, hit);
   return shot;
