@@ -64,6 +64,12 @@ function slotOf({ texture, srgb, file, wrap, filter }: GraphJson['textures'][str
   return { ...slot, sampler: { wrapS: kWraps[s], wrapT: kWraps[t], magFilter: filter === 'nearest' ? 9728 : 9729 } };
 }
 
+/** As the manifest has it. */
+function passOf(shader: Shader, alphaMode: unknown): Look['pass'] {
+  if (shader.interface.textures.some(({ name }) => name === 'scene_behind')) return 'looks_through';
+  return alphaMode === 'BLEND' ? 'blended' : alphaMode === 'MASK' ? 'masked' : 'opaque';
+}
+
 export function lookOf(of: Document, shader: Shader, graph: GraphJson): Look {
   const material = of.json.materials[of.material] ?? {};
   return {
@@ -72,5 +78,6 @@ export function lookOf(of: Document, shader: Shader, graph: GraphJson): Look {
     slots: new Map(Object.entries(graph.textures ?? {}).map(([slot, of]) => [slot, slotOf(of)])),
     doubleSided: material.doubleSided === true,
     blended: material.alphaMode === 'BLEND',
+    pass: passOf(shader, material.alphaMode),
   };
 }

@@ -1,9 +1,11 @@
 // Draws what the viewport shows with WebGPU: the Wgsl texts, and bind groups as the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
+import { backgroundLevel, kBoard, lastLod } from './behind';
 import { environmentOf, type Cube, type Environment } from './environment';
 import type { Drawable } from '../src/gltf';
 import { multiply } from '../src/math';
-import { board, dropOldest, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, slotKey, type Look, type Viewport } from './viewport';
+import type { Pass } from '../src/types';
+import { dropOldest, frameBlocks, kBlocks, kLocations, kSolid, kSorted, neutral, slotKey, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
 declare const GPUMapMode: Record<'READ', number>;
@@ -38,6 +40,8 @@ interface Target {
   color: GPUTexture;
   depth: GPUTexture;
   resolved: GPUTexture;
+  /** What is seen through glass, with mip levels, once something is. */
+  behind: GPUTexture | null;
 }
 
 const kSamples = 4;
@@ -75,6 +79,9 @@ export class GpuPainter {
   private show: GPURenderPipeline;
   private shrink = new Map<GPUTextureFormat, GPURenderPipeline>();
   private shown: GPUBuffer;
+  private take: GPURenderPipeline;
+  private surround: GPURenderPipeline;
+  private around: GPUBuffer;
   private constructor(readonly canvas: HTMLCanvasElement, readonly device: GPUDevice, dfg: Float32Array, sheen: Float32Array) {
     this.context = canvas.getContext('webgpu') as unknown as GPUCanvasContext;
     this.format = navigator.gpu.getPreferredCanvasFormat();
@@ -86,11 +93,15 @@ export class GpuPainter {
     this.tables = {
       environment_dfg: table(dfg),
       environment_sheen: table(sheen),
-      scene_behind: this.withLevels([kBoardSize, kBoardSize], 'rgba8unorm', (texture) => this.write(texture, board(), 4 * kBoardSize)),
     };
     this.constant = this.buffer(new Float32Array([1, 1, 1, 1, 1, 0, 0, 1]), GPUBufferUsage.VERTEX);
     this.shown = device.createBuffer({ size: 32, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
     this.show = this.fullscreen(kShow, this.format);
+    this.take = this.fullscreen(kTake, kColor);
+    this.surround = this.fullscreen(kSurround, kColor, {
+      depthStencil: { format: 'depth24plus', depthWriteEnabled: false, depthCompare: 'less-equal' }, multisample: { count: kSamples },
+    });
+    this.around = device.createBuffer({ size: 64, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
   }
 
   /** null where there is no WebGPU. */
@@ -129,23 +140,33 @@ export class GpuPainter {
     const target = this.targetOf(width, height);
     const environment = environmentOf(view.environment);
     const projection = multiply(kDepths, view.viewProjection(width / height));
-    for (const [name, bytes] of Object.entries(frameBlocks(view.eye(), projection, environment, view.lights, view.seconds))) this.fill(name, bytes);
-    const encoder = this.device.createCommandEncoder();
-    const pass = encoder.beginRenderPass({
-      colorAttachments: [{
-        view: target.color.createView(), resolveTarget: target.resolved.createView(), loadOp: 'clear', storeOp: 'discard', clearValue: [0, 0, 0, 0],
-      }],
-      depthStencilAttachment: { view: target.depth.createView(), depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' },
+    const blocks = frameBlocks(view.eye(), projection, environment, view.lights, view.seconds, {
+      lod: lastLod(width, height), down: true, brightness: view.brightness,
     });
+    for (const [name, bytes] of Object.entries(blocks)) this.fill(name, bytes);
+    const encoder = this.device.createCommandEncoder();
     const cut = view.cut(width);
-    if (cut > 0) {
-      pass.setScissorRect(0, 0, cut, height);
-      this.drawAll(pass, view, environment, null);
+    let pass = this.begin(encoder, target, 'clear');
+    const sides = (passes: Pass[]) => {
+      if (cut > 0) {
+        pass.setScissorRect(0, 0, cut, height);
+        this.drawAll(pass, view, environment, null, passes);
+      }
+      if (view.other && cut < width) {
+        pass.setScissorRect(cut, 0, width - cut, height);
+        this.drawAll(pass, view, environment, view.other.look, passes);
+      }
+    };
+    sides(kSolid);
+    pass.setScissorRect(0, 0, width, height);
+    if (view.background !== 'plain') this.drawAround(pass, view, environment, width / height);
+    const through = [null, view.other?.look ?? null].some((instead) => !view.drawn(instead, ['looks_through']).next().done);
+    if (through) {
+      pass.end();
+      this.takeBehind(encoder, target);
+      pass = this.begin(encoder, target, 'load');
     }
-    if (view.other && cut < width) {
-      pass.setScissorRect(cut, 0, width - cut, height);
-      this.drawAll(pass, view, environment, view.other.look);
-    }
+    sides(kSorted);
     pass.end();
     this.present(encoder, view, target, cut, onto ?? this.context.getCurrentTexture());
     this.device.queue.submit([encoder.finish()]);
@@ -174,8 +195,39 @@ export class GpuPainter {
 
   // ---- drawing
 
-  private drawAll(pass: GPURenderPassEncoder, view: Viewport, environment: Environment, instead: Look | null): void {
-    for (const { mesh, look } of view.drawn(instead)) {
+  private begin(encoder: GPUCommandEncoder, { color, resolved, depth }: Target, loadOp: GPULoadOp): GPURenderPassEncoder {
+    return encoder.beginRenderPass({
+      colorAttachments: [{ view: color.createView(), resolveTarget: resolved.createView(), loadOp, storeOp: 'store', clearValue: [0, 0, 0, 0] }],
+      depthStencilAttachment: { view: depth.createView(), depthClearValue: 1, depthLoadOp: loadOp, depthStoreOp: 'store' },
+    });
+  }
+
+  /** What is around, where nothing has been drawn. */
+  private drawAround(pass: GPURenderPassEncoder, view: Viewport, environment: Environment, aspect: number): void {
+    const rays = view.rays(aspect);
+    const level = backgroundLevel(view.background, environment.lastLevel);
+    const numbers = new Float32Array([...rays.subarray(0, 3), level, ...rays.subarray(3, 6), view.brightness, ...rays.subarray(6), 0, 0, 0, 0, 0]);
+    this.device.queue.writeBuffer(this.around, 0, numbers);
+    pass.setPipeline(this.surround);
+    const entries = [
+      { binding: 0, resource: { buffer: this.around } }, { binding: 1, resource: this.cubeOf(environment.specular) }, { binding: 2, resource: this.samplerOf(null) },
+    ];
+    pass.setBindGroup(0, this.device.createBindGroup({ layout: this.surround.getBindGroupLayout(0), entries }));
+    pass.draw(3);
+  }
+
+  /** The picture so far, with the board where it has nothing, and its mip levels. */
+  private takeBehind(encoder: GPUCommandEncoder, target: Target): void {
+    const { width, height } = target;
+    target.behind ??= this.device.createTexture({
+      size: [width, height], format: kColor, mipLevelCount: lastLod(width, height) + 1, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.RENDER_ATTACHMENT,
+    });
+    this.onto(encoder, this.take, target.behind.createView({ mipLevelCount: 1 }), [{ binding: 0, resource: target.resolved.createView() }]);
+    this.shrinkLevels(encoder, target.behind);
+  }
+
+  private drawAll(pass: GPURenderPassEncoder, view: Viewport, environment: Environment, instead: Look | null, passes: Pass[]): void {
+    for (const { mesh, look } of view.drawn(instead, passes)) {
       const program = this.programs.get(look.id);
       if (!program) continue;
       const { drawable } = mesh;
@@ -216,7 +268,7 @@ export class GpuPainter {
       },
       fragment: { module: program.stages.fragment, targets: [{ format: kColor, blend: look.blended ? blend : undefined }] },
       primitive: { cullMode: look.doubleSided ? 'none' : 'back', frontFace: mirrored ? 'cw' : 'ccw' },
-      depthStencil: { format: 'depth24plus', depthWriteEnabled: true, depthCompare: 'less' },
+      depthStencil: { format: 'depth24plus', depthWriteEnabled: !look.blended, depthCompare: 'less' },
       multisample: { count: kSamples },
     });
     program.pipelines.set(key, made);
@@ -237,6 +289,7 @@ export class GpuPainter {
     if (sampler) return this.samplerOf(slot ? view.bitmaps.get(key)?.sampler : null);
     if (of === 'environment_irradiance') return this.cubeOf(environment.irradiance);
     if (of === 'environment_specular' || of === 'environment_charlie') return this.cubeOf(environment.specular);
+    if (of === 'scene_behind') return this.target!.behind!.createView();
     return this.tables[of] ?? this.imageOf(view, key, slot?.srgb === true) ?? this.plain(neutral(of));
   }
 
@@ -327,20 +380,30 @@ export class GpuPainter {
     const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST | GPUTextureUsage.RENDER_ATTACHMENT;
     const texture = device.createTexture({ size, format, mipLevelCount, usage });
     fill(texture);
-    let pipeline = this.shrink.get(format);
-    if (!pipeline) this.shrink.set(format, (pipeline = this.fullscreen(kShrink, format)));
     const encoder = device.createCommandEncoder();
-    for (let level = 1; level < mipLevelCount; ++level) {
-      const of = (baseMipLevel: number) => texture.createView({ baseMipLevel, mipLevelCount: 1 });
-      const pass = encoder.beginRenderPass({ colorAttachments: [{ view: of(level), loadOp: 'clear', storeOp: 'store' }] });
-      pass.setPipeline(pipeline);
-      const entries = [{ binding: 0, resource: this.samplerOf({ wrapS: 33071, wrapT: 33071 }) }, { binding: 1, resource: of(level - 1) }];
-      pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
-      pass.draw(3);
-      pass.end();
-    }
+    this.shrinkLevels(encoder, texture);
     device.queue.submit([encoder.finish()]);
     return texture.createView();
+  }
+  /** Each level from the one before. */
+  private shrinkLevels(encoder: GPUCommandEncoder, texture: GPUTexture): void {
+    const { format, mipLevelCount } = texture;
+    let pipeline = this.shrink.get(format);
+    if (!pipeline) this.shrink.set(format, (pipeline = this.fullscreen(kShrink, format)));
+    const of = (baseMipLevel: number) => texture.createView({ baseMipLevel, mipLevelCount: 1 });
+    for (let level = 1; level < mipLevelCount; ++level) {
+      this.onto(encoder, pipeline, of(level), [
+        { binding: 0, resource: this.samplerOf({ wrapS: 33071, wrapT: 33071 }) }, { binding: 1, resource: of(level - 1) },
+      ]);
+    }
+  }
+  /** Fills all of a view by a pipeline of fullscreen(). */
+  private onto(encoder: GPUCommandEncoder, pipeline: GPURenderPipeline, view: GPUTextureView, entries: GPUBindGroupEntry[]): void {
+    const pass = encoder.beginRenderPass({ colorAttachments: [{ view, loadOp: 'clear', storeOp: 'store' }] });
+    pass.setPipeline(pipeline);
+    pass.setBindGroup(0, this.device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
+    pass.draw(3);
+    pass.end();
   }
 
   private cubeOf(cube: Cube): GPUTextureView {
@@ -372,18 +435,18 @@ export class GpuPainter {
     return made;
   }
 
-  private fullscreen(code: string, format: GPUTextureFormat): GPURenderPipeline {
+  private fullscreen(code: string, format: GPUTextureFormat, more: Partial<GPURenderPipelineDescriptor> = {}): GPURenderPipeline {
     const module = this.device.createShaderModule({ code: kTriangle + code });
-    return this.device.createRenderPipeline({ layout: 'auto', vertex: { module }, fragment: { module, targets: [{ format }] } });
+    return this.device.createRenderPipeline({ layout: 'auto', vertex: { module }, fragment: { module, targets: [{ format }] }, ...more });
   }
 
   private targetOf(width: number, height: number): Target {
     if (this.target?.width === width && this.target.height === height) return this.target;
-    for (const each of this.target ? [this.target.color, this.target.depth, this.target.resolved] : []) each.destroy();
+    for (const each of this.target ? [this.target.color, this.target.depth, this.target.resolved, this.target.behind] : []) each?.destroy();
     const make = (format: GPUTextureFormat, sampleCount: number, usage: number) =>
       this.device.createTexture({ size: [width, height], format, sampleCount, usage: usage | GPUTextureUsage.RENDER_ATTACHMENT });
     this.target = {
-      width, height, color: make(kColor, kSamples, 0), depth: make('depth24plus', kSamples, 0), resolved: make(kColor, 1, GPUTextureUsage.TEXTURE_BINDING),
+      width, height, color: make(kColor, kSamples, 0), depth: make('depth24plus', kSamples, 0), resolved: make(kColor, 1, GPUTextureUsage.TEXTURE_BINDING), behind: null,
     };
     return this.target;
   }
@@ -393,13 +456,33 @@ const kTriangle = `
 struct Corner { @builtin(position) place: vec4f, @location(0) uv: vec2f }
 @vertex fn corner(@builtin(vertex_index) i: u32) -> Corner {
   let xy = vec2f(select(-1.0, 3.0, i == 1u), select(-1.0, 3.0, i == 2u));
-  return Corner(vec4f(xy, 0.0, 1.0), vec2f(0.5 + 0.5 * xy.x, 0.5 - 0.5 * xy.y));
+  return Corner(vec4f(xy, 1.0, 1.0), vec2f(0.5 + 0.5 * xy.x, 0.5 - 0.5 * xy.y));
 }`;
 
 const kShrink = `
 @group(0) @binding(0) var taken: sampler;
 @group(0) @binding(1) var larger: texture_2d<f32>;
 @fragment fn pixel(at: Corner) -> @location(0) vec4f { return textureSample(larger, taken, at.uv); }`;
+
+const kTake = `
+@group(0) @binding(0) var picture: texture_2d<f32>;
+@fragment fn pixel(at: Corner) -> @location(0) vec4f {
+  let c = textureLoad(picture, vec2i(at.place.xy), 0);
+  let square = vec2i(floor(vec2f(at.uv.x, 1.0 - at.uv.y) * ${kBoard.squares.toFixed(1)}));
+  let board = select(${kBoard.dark}, ${kBoard.light}, ((square.x + square.y) & 1) == 1);
+  return vec4f(c.rgb + (1.0 - clamp(c.a, 0.0, 1.0)) * board, 1.0);
+}`;
+
+const kSurround = `
+struct Around { right: vec3f, level: f32, up: vec3f, brightness: f32, ahead: vec3f }
+@group(0) @binding(0) var<uniform> around: Around;
+@group(0) @binding(1) var map: texture_cube<f32>;
+@group(0) @binding(2) var taken: sampler;
+@fragment fn pixel(at: Corner) -> @location(0) vec4f {
+  let xy = vec2f(2.0 * at.uv.x - 1.0, 1.0 - 2.0 * at.uv.y);
+  let along = xy.x * around.right + xy.y * around.up + around.ahead;
+  return vec4f(around.brightness * textureSampleLevel(map, taken, along, around.level).rgb, 1.0);
+}`;
 
 /** The same as the viewport's in WebGL. */
 const kShow = `

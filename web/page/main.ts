@@ -213,7 +213,7 @@ export class Page {
     const graph = scene.graph(0, this.options(), bare?.attributes.has('COLOR_0') ? ['NORMAL', 'COLOR_0'] : ['NORMAL']);
     const shader = graph.generate(this.options());
     this.viewport.prepare(shader);
-    this.viewport.looks.set(kDefaultMaterial, { id: shader.id, block: shader.pack(), slots: new Map(), doubleSided: false, blended: false });
+    this.viewport.looks.set(kDefaultMaterial, { id: shader.id, block: shader.pack(), slots: new Map(), doubleSided: false, blended: false, pass: 'opaque' });
     for (const handle of [shader, graph, scene]) handle.free();
   }
 
@@ -653,6 +653,15 @@ export class Page {
     });
     this.on('exposure', 'input', () => {
       this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);
+      this.viewport.redraw();
+    });
+    this.on('background', 'change', () => {
+      this.viewport.background = byId<HTMLSelectElement>('background').value as Viewport['background'];
+      this.viewport.redraw();
+    });
+    this.on('brightness', 'input', () => {
+      this.viewport.brightness = Number(byId<HTMLInputElement>('brightness').value);
+      this.compare();
       this.viewport.redraw();
     });
     this.connectClock();

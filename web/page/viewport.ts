@@ -1,12 +1,15 @@
 // Draws materials with their own shaders: the Essl texts, blocks by the offsets that the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
+import type { Pass } from '../src/types';
+import { Behind, backgroundLevel, kTriangleVertex, lastLod, type Background, type Copy } from './behind';
 import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
 import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gltf';
 import type { GpuPainter } from './gpu';
 import { isCount, item, list } from '../src/json';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
-import { add, cross, lookAt, mirrors, multiply, perspective, scale, type Mat4, type Vec3 } from '../src/math';
+import { add, cross, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
 import { ball, flatDrawable } from './shapes';
+import { kShowFragment } from './tone';
 
 /** A glTF texture's index, its colour space, and where the graph has it how it is looked up, as a glTF sampler: else as the file's
  * sampler says. */
@@ -25,6 +28,8 @@ export interface Look {
   slots: Map<string, Slot>;
   doubleSided: boolean;
   blended: boolean;
+  /** As the manifest has it. */
+  pass: Pass;
 }
 
 interface Program {
@@ -40,6 +45,14 @@ interface Mesh {
   /** None where they are another mesh's. */
   buffers: WebGLBuffer[];
   count: number;
+  /** Of its box, before its place in the world. */
+  middle: Vec3;
+}
+/** What is drawn in columns of the picture: with `instead` in place of the shown material's look. */
+interface Side {
+  instead: Look | null;
+  from: number;
+  to: number;
 }
 
 /** Programs that are kept; of more, the oldest that nothing is drawn with goes. */
@@ -55,11 +68,16 @@ const kInputs: Record<string, string> = {
 };
 /** Where the vertex shaders have their attributes (docs/bindings.md). */
 export const kLocations = ['POSITION', 'NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'COLOR_0'];
+export const kSolid: Pass[] = ['opaque', 'masked'];
+export const kSorted: Pass[] = ['looks_through', 'blended'];
+const kPasses: Pass[] = [...kSolid, ...kSorted];
 /** Linear colours with several samples for each pixel, and without. */
 interface Target {
   frame: WebGLFramebuffer;
   resolved: WebGLFramebuffer;
   color: WebGLTexture;
+  /** What is seen through glass, once something is. */
+  behind?: Copy;
   width: number;
   height: number;
 }
@@ -68,7 +86,7 @@ interface Target {
 interface Maps {
   specular: WebGLTexture;
   irradiance: WebGLTexture;
-  /** In place of the board. */
+  /** What is seen through what transmits. */
   behind?: WebGLTexture;
 }
 
@@ -111,12 +129,21 @@ export function neutral(slot: string): [number, number, number, number] {
   return [255, 255, 255, 255];
 }
 
+/** What frameBlocks() is told beside the camera. `lod` is the last of scene_behind, whose rows run `down` the screen or up. */
+export interface Surroundings {
+  lod?: number;
+  down?: boolean;
+  brightness?: number;
+}
+
 /** The blocks of a frame, by the fields' places in templates/mesh.node (docs/bindings.md). */
-export function frameBlocks(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[], seconds: number): Record<string, Uint8Array> {
+export function frameBlocks(
+  eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[], seconds: number, { lod = 0, down = false, brightness = 1 }: Surroundings = {},
+): Record<string, Uint8Array> {
   const frame = new DataView(new ArrayBuffer(96));
   viewProjection.forEach((x, i) => frame.setFloat32(4 * i, x, true));
   eye.forEach((x, i) => frame.setFloat32(64 + 4 * i, x, true));
-  frame.setFloat32(76, 1, true);
+  frame.setFloat32(76, brightness, true);
   frame.setFloat32(80, environment.lastLevel, true);
   frame.setInt32(84, lights.length, true);
   const all = new Float32Array(16 * kMostLights);
@@ -125,25 +152,13 @@ export function frameBlocks(eye: Vec3, viewProjection: Mat4, environment: Enviro
   const m = viewProjection;
   for (let k = 0; k < 4; ++k) {
     through[k] = 0.5 * (m[4 * k] + m[4 * k + 3]);
-    through[4 + k] = 0.5 * (m[4 * k + 1] + m[4 * k + 3]);
+    through[4 + k] = 0.5 * (m[4 * k + 3] + (down ? -1 : 1) * m[4 * k + 1]);
     through[8 + k] = m[4 * k + 3];
   }
-  through[12] = Math.log2(kBoardSize);
+  through[12] = lod;
   const bytes = ({ buffer }: Float32Array) => new Uint8Array(buffer);
   const clock = new Float32Array([seconds, Math.floor(seconds * kPicturesPerSecond), 0, 0]);
   return { Frame: new Uint8Array(frame.buffer), Lights: bytes(all), SeeThrough: bytes(through), Clock: bytes(clock) };
-}
-
-export const kBoardSize = 64;
-
-/** What is seen through what transmits: a chequered board, RGBA. */
-export function board(): Uint8Array<ArrayBuffer> {
-  const texels = new Uint8Array(4 * kBoardSize * kBoardSize);
-  for (let i = 0; i < kBoardSize * kBoardSize; ++i) {
-    const light = ((i % kBoardSize >> 3) + (Math.floor(i / kBoardSize) >> 3)) % 2 ? 150 : 90;
-    texels.set([light, light, light, 255], 4 * i);
-  }
-  return texels;
 }
 
 export class Viewport {
@@ -161,7 +176,8 @@ export class Viewport {
   private show: WebGLProgram;
   private target: Target | null = null;
   private tables: { dfg: WebGLTexture; sheen: WebGLTexture };
-  private behind: WebGLTexture;
+  private behind: Behind;
+  private second: Target | null = null;
   private pending = 0;
 
   orbit = { yaw: 0.35, pitch: 0.2, distance: 3.4 };
@@ -169,6 +185,9 @@ export class Viewport {
   radius = 1;
   environment = 'Studio';
   exposure = 1;
+  background: Background = 'plain';
+  /** What is around is as bright. */
+  brightness = 1;
   /** Of the materials' time, which runs while something that is drawn asks for it. */
   seconds = 0;
   playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -194,8 +213,8 @@ export class Viewport {
     this.blocks = kBlocks.map(() => gl.createBuffer()!);
     this.ballMesh = this.upload(ball());
     this.tables = { dfg: this.pairs(dfg), sheen: this.pairs(sheen) };
-    this.behind = this.board();
-    this.show = this.link(kShowVertex, kShowFragment);
+    this.behind = new Behind(gl, (vertex, fragment) => this.link(vertex, fragment));
+    this.show = this.link(kTriangleVertex, kShowFragment);
   }
 
   // ---- what there is to draw
@@ -317,25 +336,14 @@ export class Viewport {
     this.pending = 0;
     this.tick();
     if (this.gpu) return this.gpu.paint(this, this.sized(this.gpu.canvas));
-    const { gl } = this;
     const { width, height } = this.sized(this.canvas);
     const target = this.targetOf(width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
-    gl.viewport(0, 0, width, height);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const environment = environmentOf(this.environment);
-    this.frame(this.eye(), this.viewProjection(width / height), environment, this.lights);
     if (this.other?.difference) return this.drawDifference(target, environment, this.other.look);
-    gl.enable(gl.SCISSOR_TEST);
     const cut = this.cut(width);
-    gl.scissor(0, 0, cut, height);
-    this.drawAll(environment, null);
-    if (this.other) {
-      gl.scissor(cut, 0, width - cut, height);
-      this.drawAll(environment, this.other.look);
-    }
-    gl.disable(gl.SCISSOR_TEST);
+    const sides: Side[] = [{ instead: null, from: 0, to: cut }];
+    if (this.other) sides.push({ instead: this.other.look, from: cut, to: width });
+    this.drawAll(target, environment, sides);
     this.present(target, cut, target);
   }
 
@@ -352,15 +360,15 @@ export class Viewport {
   }
 
   private drawDifference(target: Target, environment: Environment, look: Look): void {
-    const { gl } = this;
-    this.drawAll(environment, null);
-    const second = this.makeTarget(target.width, target.height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, second.frame);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.drawAll(environment, look);
-    this.resolve(second);
-    this.present(target, -10, second);
-    this.dropTarget(second);
+    const { width, height } = target;
+    this.drawAll(target, environment, [{ instead: null, from: 0, to: width }]);
+    if (this.second?.width !== width || this.second.height !== height) {
+      if (this.second) this.dropTarget(this.second);
+      this.second = this.makeTarget(width, height);
+    }
+    this.drawAll(this.second, environment, [{ instead: look, from: 0, to: width }]);
+    this.resolve(this.second);
+    this.present(target, -10, this.second);
   }
 
   /** The column from which on the other look is seen. */
@@ -372,21 +380,62 @@ export class Viewport {
     return getComputedStyle(this.canvas).getPropertyValue('--viewport').trim().split(' ').map((x) => Number(x) / 255);
   }
 
-  /** What is drawn, and how it looks, in order; `instead` is another look of the shown material. */
-  *drawn(instead: Look | null): Generator<{ mesh: Mesh; look: Look }> {
+  /** What is drawn in those passes, and how it looks, in order; `instead` is another look of the shown material. */
+  *drawn(instead: Look | null, passes: Pass[] = kPasses): Generator<{ mesh: Mesh; look: Look }> {
     const own = !this.useBall && this.meshes.length > 0;
-    for (const blended of [false, true]) {
+    for (const pass of passes) {
+      const found: { mesh: Mesh; look: Look }[] = [];
       for (const mesh of own ? this.meshes : [this.ballMesh]) {
         const material = own ? mesh.drawable.material : this.shown;
         const look = instead && material === this.shown ? instead : this.looks.get(material);
-        if (look && look.blended === blended) yield { mesh, look };
+        if (look?.pass === pass) found.push({ mesh, look });
       }
+      yield* kSorted.includes(pass) ? this.fromBack(found) : found;
     }
   }
+  /** By their middles along the view. */
+  private fromBack<T extends { mesh: Mesh }>(found: T[]): T[] {
+    if (found.length < 2) return found;
+    const eye = this.eye();
+    const [x, y, z] = this.middle.map((at, i) => at - eye[i]);
+    const far = new Map(found.map(({ mesh }) => {
+      const at = point(mesh.drawable.model, mesh.middle);
+      return [mesh, x * at[0] + y * at[1] + z * at[2]];
+    }));
+    return found.sort((a, b) => far.get(b.mesh)! - far.get(a.mesh)!);
+  }
 
-  private drawAll(environment: Environment, instead: Look | null): void {
-    const maps = this.mapsOf(environment);
-    for (const { mesh, look } of this.drawn(instead)) this.drawMesh(mesh, look, maps);
+  /** A frame by its passes, as docs/bindings.md has them, onto a target. */
+  private drawAll(target: Target, environment: Environment, sides: Side[]): void {
+    const { gl, background, brightness } = this;
+    const { width, height } = target;
+    const maps: Maps = { ...this.mapsOf(environment) };
+    const aspect = width / height;
+    this.frame(this.eye(), this.viewProjection(aspect), environment, this.lights, { lod: lastLod(width, height), brightness });
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(0, 0, 0, 0);
+    gl.depthMask(true);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.drawSides(sides, kSolid, maps, height);
+    if (background !== 'plain') this.behind.surround(maps.specular, this.rays(aspect), backgroundLevel(background, environment.lastLevel), brightness);
+    if (sides.some(({ instead }) => !this.drawn(instead, ['looks_through']).next().done)) {
+      this.resolve(target);
+      target.behind ??= this.behind.make(width, height);
+      this.behind.take(target.color, target.behind);
+      maps.behind = target.behind.texture;
+      gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    }
+    this.drawSides(sides, kSorted, maps, height);
+  }
+  private drawSides(sides: Side[], passes: Pass[], maps: Maps, height: number): void {
+    const { gl } = this;
+    gl.enable(gl.SCISSOR_TEST);
+    for (const { instead, from, to } of sides) {
+      gl.scissor(from, 0, to - from, height);
+      for (const { mesh, look } of this.drawn(instead, passes)) this.drawMesh(mesh, look, maps);
+    }
+    gl.disable(gl.SCISSOR_TEST);
   }
 
   private drawMesh(mesh: Mesh, look: Look, maps: Maps): void {
@@ -398,6 +447,7 @@ export class Viewport {
     gl[look.doubleSided ? 'disable' : 'enable'](gl.CULL_FACE);
     gl.frontFace(mesh.drawable.mirrored ? gl.CW : gl.CCW);
     gl[look.blended ? 'enable' : 'disable'](gl.BLEND);
+    gl.depthMask(!look.blended);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     this.fill('Material', look.block);
     const object = new Float32Array(32);
@@ -411,6 +461,7 @@ export class Viewport {
     gl.bindVertexArray(mesh.arrays);
     gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
+    gl.depthMask(true);
   }
 
   private textureOf(name: string, look: Look, maps: Maps): WebGLTexture {
@@ -418,13 +469,13 @@ export class Viewport {
     if (name === 'environment_specular' || name === 'environment_charlie') return maps.specular;
     if (name === 'environment_dfg') return this.tables.dfg;
     if (name === 'environment_sheen') return this.tables.sheen;
-    if (name === 'scene_behind') return maps.behind ?? this.behind;
+    if (name === 'scene_behind') return maps.behind!;
     const slot = look.slots.get(name);
     return (slot && this.textures.get(slotKey(slot))) ?? this.colorTexture(neutral(name));
   }
 
-  private frame(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): void {
-    for (const [name, bytes] of Object.entries(frameBlocks(eye, viewProjection, environment, lights, this.seconds))) this.fill(name, bytes);
+  private frame(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[], around: Surroundings = {}): void {
+    for (const [name, bytes] of Object.entries(frameBlocks(eye, viewProjection, environment, lights, this.seconds, around))) this.fill(name, bytes);
   }
 
   private fill(block: string, bytes: Uint8Array): void {
@@ -442,9 +493,19 @@ export class Viewport {
   }
   viewProjection(aspect: number): Mat4 {
     const { distance } = this.orbit;
-    const fov = aspect < 1 ? 2 * Math.atan(Math.tan(0.36) / aspect) : 0.72;
     const near = Math.max(distance - 1.5, 0.02) * this.radius;
-    return multiply(perspective(fov, aspect, near, (distance + 3) * this.radius), lookAt(this.eye(), this.middle));
+    return multiply(perspective(2 * Math.atan(this.slope(aspect)), aspect, near, (distance + 3) * this.radius), lookAt(this.eye(), this.middle));
+  }
+
+  /** The tangent of half the angle that is seen from below to above. */
+  private slope(aspect: number): number {
+    return Math.tan(0.36) / Math.min(aspect, 1);
+  }
+  /** From the eye to the right, up and ahead: rays through (x, y) of the screen, from -1 to 1, are x right + y up + ahead. */
+  rays(aspect: number): Float32Array {
+    const view = lookAt(this.eye(), this.middle);
+    const slope = this.slope(aspect);
+    return Float32Array.from([slope * aspect, slope, -1].flatMap((by, row) => [view[row] * by, view[4 + row] * by, view[8 + row] * by]));
   }
 
   private resolve({ frame, resolved, width, height }: Target): void {
@@ -516,13 +577,7 @@ export class Viewport {
     const draw = (look: Look) => {
       const { gl } = this;
       const target = this.makeTarget(size, size);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
-      gl.viewport(0, 0, size, size);
-      gl.clearColor(0, 0, 0, 0);
-      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-      const environment = environmentOf(this.environment);
-      this.frame(this.eye(), this.viewProjection(1), environment, this.lights);
-      this.drawAll(environment, look);
+      this.drawAll(target, environmentOf(this.environment), [{ instead: look, from: 0, to: size }]);
       this.resolve(target);
       gl.bindFramebuffer(gl.FRAMEBUFFER, target.resolved);
       const pixels = new Float32Array(4 * size * size);
@@ -597,7 +652,7 @@ export class Viewport {
     });
     fill(gl.ELEMENT_ARRAY_BUFFER, drawable.indices);
     gl.bindVertexArray(null);
-    return { drawable, arrays, buffers, count: drawable.indices.length };
+    return { drawable, arrays, buffers, count: drawable.indices.length, middle: bounds([{ ...drawable, model: identity() }]).middle };
   }
   private dropMesh({ arrays, buffers }: Mesh): void {
     this.gl.deleteVertexArray(arrays); // where it is another's, too, the second time does nothing
@@ -673,18 +728,6 @@ export class Viewport {
     return texture;
   }
 
-  /** What is seen through what transmits, blurred from level to level. */
-  private board(): WebGLTexture {
-    const { gl } = this;
-    const texture = gl.createTexture()!;
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, kBoardSize, kBoardSize, 0, gl.RGBA, gl.UNSIGNED_BYTE, board());
-    gl.generateMipmap(gl.TEXTURE_2D);
-    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-    return texture;
-  }
-
   private targetOf(width: number, height: number): Target {
     if (this.target?.width === width && this.target.height === height) return this.target;
     if (this.target) this.dropTarget(this.target);
@@ -723,46 +766,6 @@ export class Viewport {
     gl.deleteFramebuffer(target.frame);
     gl.deleteFramebuffer(target.resolved);
     gl.deleteTexture(target.color);
+    if (target.behind) this.behind.drop(target.behind);
   }
 }
-
-const kShowVertex = `#version 300 es
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}`;
-
-/** Exposure, the Khronos PBR neutral tone mapper, and sRGB, before the page's colour. */
-const kShowFragment = `#version 300 es
-precision highp float;
-uniform sampler2D picture, second;
-uniform bool difference;
-uniform float exposure, cut;
-uniform vec3 back;
-out vec4 shown;
-vec3 neutral(vec3 c) {
-  const float start = 0.8 - 0.04, desaturation = 0.15;
-  float least = min(c.r, min(c.g, c.b));
-  c -= least < 0.08 ? least - 6.25 * least * least : 0.04;
-  float peak = max(c.r, max(c.g, c.b));
-  if (peak < start) return c;
-  float d = 1.0 - start;
-  float new_peak = 1.0 - d * d / (peak + d - start);
-  c *= new_peak / peak;
-  return mix(c, vec3(new_peak), 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0));
-}
-vec3 encode(vec3 c) {
-  return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
-}
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  vec4 c = texelFetch(picture, at, 0);
-  if (difference) {
-    vec3 by = abs(c.rgb - texelFetch(second, at, 0).rgb) * exposure * 8.0;
-    shown = vec4(mix(back, encode(clamp(by, 0.0, 1.0)), step(1e-4, c.a)), 1.0);
-    return;
-  }
-  float a = clamp(c.a, 0.0, 1.0);
-  vec3 lit = encode(clamp(neutral(max(c.rgb / max(a, 1e-4), 0.0) * exposure), 0.0, 1.0));
-  shown = vec4(mix(back, lit, a), 1.0);
-  if (abs(gl_FragCoord.x - cut) < 1.0) shown.rgb = vec3(0.85);
-}`;
