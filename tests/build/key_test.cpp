@@ -67,6 +67,7 @@ const std::vector<Row>& rows() {
       {"argument_buffers", Decides::MslCode, [](Options& o) { o.argument_buffers = true; }},
       {"sync", Decides::Nothing, [](Options& o) { o.sync = false; }},
       {"programs", Decides::Run, [](Options& o) { o.programs = 2; }},
+      {"fallback", Decides::Run, [](Options& o) { o.fallback = true; }},
       {"weights", Decides::Run, [](Options& o) { o.weights = "weights.json"; }},
       {"programs_report", Decides::Run, [](Options& o) { o.programs_report = "programs.md"; }},
       {"properties", Decides::Graph, [](Options& o) { o.properties = true; }},

@@ -112,6 +112,33 @@ TEST(Value, largeObjectsKeepTheirOrder) {
   EXPECT_EQ(at(json, "m3"), "twice");
 }
 
+/// A large object that was read finds its members by an index; one that is changed, without.
+TEST(Value, membersOfLargeObjectsAreFound) {
+  constexpr size_t kMany = 1000;
+  std::string text = "{";
+  for (size_t i = 0; i < kMany; ++i)
+    text += fmt::format(R"({}"m{}": {})", i == 0 ? "" : ", ", i * 7919 % kMany, i);
+  Json json = *parse(text + R"(, "m3": "twice"})", "a.json");
+  const auto all = [&] {
+    for (size_t i = 0; i < kMany; ++i) {
+      const std::string name = fmt::format("m{}", i * 7919 % kMany);
+      ASSERT_NE(member(json, name), nullptr) << name;
+      EXPECT_EQ(*member(json, name), name == "m3" ? Json("twice") : Json(i));
+    }
+    for (const char* absent : {"", "a", "m", "m1000", "z"}) EXPECT_EQ(member(json, absent), nullptr);
+  };
+  all();
+  const Json copy = json;
+  EXPECT_EQ(at(copy, "m7"), at(json, "m7"));
+  json["new"] = 1;
+  EXPECT_EQ(at(json, "new"), 1);
+  json.erase("new");
+  EXPECT_EQ(member(json, "new"), nullptr);
+  all();
+  json.push_back({"later", 2});
+  EXPECT_EQ(at(json, "later"), 2);
+}
+
 /// However long what it names, and however much is wrong.
 TEST(JsonReport, isBounded) {
   const std::string file = "a.json";

@@ -14,7 +14,7 @@
 #include "json/path.h"
 #include "support/text.h"
 
-template class nlohmann::basic_json<nlohmann::ordered_map>;
+template class nlohmann::basic_json<lacquer::json::Members>;
 
 namespace lacquer::json {
 
@@ -70,23 +70,24 @@ public:
     return true;
   }
   bool end_object() override {
-    const std::span<Waiting> members = inside();
-    const std::vector<bool> dropped = doubled(members);
+    const std::span<Json> values = inside();
+    const std::span<std::string> names = std::span(names_).subspan(open_.back().first_name);
+    const std::vector<bool> dropped = doubled(names);
     Json object = Json::object();
     auto& made = object.get_ref<Json::object_t&>();
-    made.reserve(members.size());
-    for (size_t i = 0; i < members.size(); ++i) {
-      if (dropped.empty() || !dropped[i])
-        made.emplace_back(std::move(members[i].name), std::move(members[i].value));
+    made.reserve(values.size());
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (dropped.empty() || !dropped[i]) made.emplace_back(std::move(names[i]), std::move(values[i]));
     }
+    made.index();
     return close(std::move(object));
   }
   bool end_array() override {
-    const std::span<Waiting> elements = inside();
+    const std::span<Json> values = inside();
     Json array = Json::array();
     auto& made = array.get_ref<Json::array_t&>();
-    made.reserve(elements.size());
-    for (Waiting& element : elements) made.push_back(std::move(element.value));
+    made.reserve(values.size());
+    for (Json& value : values) made.push_back(std::move(value));
     return close(std::move(array));
   }
   bool parse_error(std::size_t position, const std::string& token,
@@ -98,7 +99,7 @@ public:
     return false;
   }
 
-  bool full() const { return values_ > most_; }
+  bool full() const { return count_ > most_; }
 
   Json root;
   int errorId = 0;  ///< the library's number of the error
@@ -107,12 +108,8 @@ public:
   size_t errorPosition = 0;  ///< bytes read until then
 
 private:
-  struct Waiting {
-    std::string name;  ///< of a member
-    Json value;
-  };
   struct Open {
-    size_t first;  ///< place in `waiting_` of what is in it
+    size_t first, first_name;  ///< places in `values_` and `names_` of what is in it
     bool object;
     std::string name;  ///< as a member
   };
@@ -125,18 +122,19 @@ private:
   }
 
   /// False when there is no room for one more value, which ends the reading.
-  bool count() { return ++values_ <= most_; }
+  bool count() { return ++count_ <= most_; }
 
   bool open(bool object) {
     if (!count()) return false;
-    open_.push_back({waiting_.size(), object, std::move(key_)});
+    open_.push_back({values_.size(), names_.size(), object, std::move(key_)});
     return true;
   }
 
-  std::span<Waiting> inside() { return std::span(waiting_).subspan(open_.back().first); }
+  std::span<Json> inside() { return std::span(values_).subspan(open_.back().first); }
 
   bool close(Json made) {
-    waiting_.erase(waiting_.begin() + static_cast<ptrdiff_t>(open_.back().first), waiting_.end());
+    values_.resize(open_.back().first);
+    names_.resize(open_.back().first_name);
     key_ = std::move(open_.back().name);
     open_.pop_back();
     place(std::move(made));
@@ -145,10 +143,12 @@ private:
 
   /// Puts a value where the parser stands.
   void place(Json value) {
-    if (open_.empty())
+    if (open_.empty()) {
       root = std::move(value);
-    else
-      waiting_.push_back({std::move(key_), std::move(value)});
+      return;
+    }
+    if (open_.back().object) names_.push_back(std::move(key_));
+    values_.push_back(std::move(value));
   }
 
   /// The JSON pointer of the innermost open container.
@@ -161,33 +161,35 @@ private:
     return pointer(Path(path, child.first - parent.first), depth + 1);
   }
 
-  /// By member whether another one of its name follows; empty where none does. They are noted.
-  std::vector<bool> doubled(std::span<const Waiting> members) {
-    if (members.size() < 2) return {};
-    std::vector<size_t> order(members.size());
+  /// By name whether the same follows; empty where none does. They are noted.
+  std::vector<bool> doubled(std::span<const std::string> names) {
+    if (names.size() < 2) return {};
+    std::vector<size_t> order(names.size());
     std::iota(order.begin(), order.end(), size_t{0});
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-      const int compared = members[a].name.compare(members[b].name);
+      const int compared = names[a].compare(names[b]);
       return compared < 0 || (compared == 0 && a < b);
     });
     std::vector<bool> dropped;
     for (size_t i = 1; i < order.size(); ++i) {
-      if (members[order[i - 1]].name != members[order[i]].name) continue;
-      dropped.resize(members.size());
+      if (names[order[i - 1]] != names[order[i]]) continue;
+      dropped.resize(names.size());
       dropped[order[i - 1]] = true;
     }
     for (size_t i = 0; i < dropped.size() && noted_ < kMostNoted; ++i) {
       if (!dropped[i]) continue;
-      doubles.emplace_back(pointer(), members[i].name);
+      doubles.emplace_back(pointer(), names[i]);
       noted_ += 1 + doubles.back().first.size() + doubles.back().second.size();
     }
     return dropped;
   }
 
-  std::vector<Waiting> waiting_;  ///< what is complete in open containers, of the outer ones first
+  // What is complete in open containers, of the outer ones first; the names are those of members alone.
+  std::vector<Json> values_;
+  std::vector<std::string> names_;
   std::vector<Open> open_;
   std::string key_;
-  uint64_t most_, values_ = 0;
+  uint64_t most_, count_ = 0;
   size_t noted_ = 0;  ///< bytes of doubles
 };
 
@@ -337,11 +339,7 @@ Json reread(std::string_view text) {
 
 const Json* member(const Json& object, std::string_view key) {
   const auto* members = object.get_ptr<const Json::object_t*>();
-  if (members == nullptr) return nullptr;
-  for (const auto& [name, value] : *members) {
-    if (name == key) return &value;
-  }
-  return nullptr;
+  return members == nullptr ? nullptr : members->found(key);
 }
 
 const Json& at(const Json& object, std::string_view key) {

@@ -2,15 +2,91 @@
 // has (diagnostics come in document order).
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "support/diagnostic.h"
 #include "support/limits.h"
 
-extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+namespace lacquer::json {
+
+/// An object's members, in their order. nlohmann::ordered_map looks through all of them for one; a file's
+/// large objects are indexed, so that one is found in logarithmic time until the object changes.
+template <class Key, class T, class Less = std::less<void>,
+          class Allocator = std::allocator<std::pair<const Key, T>>>
+class Members : public nlohmann::ordered_map<Key, T, Less, Allocator> {
+  using Base = nlohmann::ordered_map<Key, T, Less, Allocator>;
+
+public:
+  using Base::Base;
+
+  /// nullptr where there is none of that name.
+  const T* found(std::string_view key) const {
+    const auto none = this->end();
+    if (order_.empty()) {
+      const auto at =
+          std::find_if(this->begin(), none, [&](const auto& member) { return member.first == key; });
+      return at == none ? nullptr : &at->second;
+    }
+    const auto at = std::lower_bound(order_.begin(), order_.end(), key, [&](uint32_t i, std::string_view k) {
+      return this->data()[i].first < k;
+    });
+    return at != order_.end() && this->data()[*at].first == key ? &this->data()[*at].second : nullptr;
+  }
+
+  /// Names must differ.
+  void index() {
+    constexpr size_t kSmall = 32;  // fewer are looked through as fast
+    if (this->size() <= kSmall || this->size() > std::numeric_limits<uint32_t>::max()) return;
+    order_.resize(this->size());
+    std::iota(order_.begin(), order_.end(), uint32_t{0});
+    std::sort(order_.begin(), order_.end(),
+              [&](uint32_t a, uint32_t b) { return this->data()[a].first < this->data()[b].first; });
+  }
+
+  // The library changes an object by these.
+  template <class... Arguments>
+  auto emplace(Arguments&&... arguments) {
+    order_.clear();
+    return Base::emplace(std::forward<Arguments>(arguments)...);
+  }
+  template <class... Arguments>
+  auto insert(Arguments&&... arguments) {
+    order_.clear();
+    return Base::insert(std::forward<Arguments>(arguments)...);
+  }
+  template <class... Arguments>
+  auto erase(Arguments&&... arguments) {
+    order_.clear();
+    return Base::erase(std::forward<Arguments>(arguments)...);
+  }
+  template <class Name>
+  T& operator[](Name&& name) {
+    order_.clear();
+    return Base::operator[](std::forward<Name>(name));
+  }
+  void clear() {
+    order_.clear();
+    Base::clear();
+  }
+
+private:
+  std::vector<uint32_t> order_;  ///< places by name; none where nothing is indexed
+};
+
+}  // namespace lacquer::json
+
+extern template class nlohmann::basic_json<lacquer::json::Members>;
 
 namespace lacquer::json {
 
@@ -19,7 +95,7 @@ namespace lacquer::json {
 /// Of the library's functions some are undefined where a value is of another kind, which a file can always
 /// bring about. Readers use at(), elements() and text() below, and look at the kind before they take a
 /// number. Equal objects have their members in the same order.
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::basic_json<Members>;
 
 /// What becomes of members with the same name in one object.
 enum class Doubles : uint8_t {
