@@ -83,7 +83,9 @@ std::string typeName(int components) {
 }
 
 std::string templateName(const Subject& subject, const std::string& body) {
-  return fmt::format("bench_{}_{}", subject.node, body.empty() ? "reference" : body);
+  std::string node = subject.node;  // a form of an overloaded node has its types behind it: mix<vec3>
+  for (char& c : node) c = c == '<' || c == '>' || c == ',' ? '_' : c;
+  return fmt::format("bench_{}_{}", node, body.empty() ? "reference" : body);
 }
 
 }  // namespace
@@ -92,7 +94,8 @@ std::vector<Subject> subjects(const lang::Library& library) {
   std::vector<Subject> all;
   for (const std::string_view name : library.names(lang::DeclKind::Node)) {
     const Result<const lang::NodeDecl*> node = library.node(name);
-    if (!node || (*node)->variants.empty()) continue;
+    // The other bodies of patterns are for a pixel's size, not for a point: docs/patterns.md.
+    if (!node || (*node)->variants.empty() || !(*node)->category.empty()) continue;
     const auto it = geometric().find(std::string(name));
     Subject subject = it == geometric().end() ? generic(**node) : it->second;
     subject.node = name;

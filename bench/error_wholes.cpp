@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "accuracy/exact.h"
+#include "accuracy/profiles.h"
 #include "bench/error_colors.h"
 #include "eval/evaluate.h"
 #include "eval/points.h"
@@ -36,14 +37,14 @@ std::array<double, 3> direction(double cosine, double azimuth) {
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
-graph::Graph graphOf(const std::string& profile, bool anisotropic, bool lambertian) {
+graph::Graph graphOf(const std::string& profile, bool anisotropic) {
   const std::string text = fmt::format(
       R"({{"asset": {{"version": "2.0"}}, "materials": [{{
-  "pbrMetallicRoughness": {{"metallicFactor": {}}},
+  "pbrMetallicRoughness": {{"metallicFactor": 0.5}},
   "extensions": {{"KHR_materials_ior": {{"ior": 1.4}},
     "KHR_materials_coat": {{"coatFactor": 1, "coatIor": 1.4, "coatColorFactor": [0.5, 0.5, 0.5],
       "coatAnisotropyStrength": {}}}}}}}]}})",
-      lambertian ? 0 : 0.5, anisotropic ? 0.5 : 0);
+      anisotropic ? 0.5 : 0);
   const Result<material::Document> document = test::materialsOf(text, "bench.gltf");
   if (!document) throw std::runtime_error(format(document.error()[0]));
   test::BuildSetup options;
@@ -149,7 +150,7 @@ eval::Bindings bound(const ir::Module& module, const Inputs& inputs, bool enviro
 /// Of each point, relative.
 std::vector<double> roundings(const lang::Library& library, const std::string& profile, bool environment,
                               bool anisotropic, size_t points) {
-  const ir::Module lowered = moduleOf(graphOf(profile, anisotropic, false), library);
+  const ir::Module lowered = moduleOf(graphOf(profile, anisotropic), library);
   ir::Module placed = lowered;
   passes::PipelineOptions pipeline;
   pipeline.lights = {false, {{"directional", 1}}};
@@ -166,55 +167,33 @@ std::vector<double> roundings(const lang::Library& library, const std::string& p
   return errors;
 }
 
-/// Coats, views and lights with the exact answers, the same for every profile.
+/// Coats, views and lights with the exact answers, the same for every profile. Of none is the base's own
+/// light black, which the answers are parts of.
 struct Coats {
-  std::vector<eval::Point> points;
-  std::vector<accuracy::Coating> coatings;
+  std::vector<accuracy::Query> queries;
   std::vector<double> exact;
 };
 
 Coats drawCoats(bool environment, size_t points) {
+  constexpr double kLeast = 1e-3;
   std::mt19937_64 random(31);
   Coats coats;
   for (size_t i = 0; i < points; ++i) {
-    const accuracy::Coating coating{within(random, 1, 4), within(random, 0, 1), within(random, 0, 1), 0};
+    const accuracy::Coating coating{within(random, 1, 4), within(random, kLeast, 1), within(random, 0, 1), 0};
     const double view = within(random, 0, 1);
-    const double light = within(random, 0, 1);
-    eval::Point point;
-    point.v = direction(view, 0);
-    point.l = direction(light, 0);
-    coats.points.push_back(point);
-    coats.coatings.push_back(coating);
+    const double light = within(random, kLeast, 1);
+    coats.queries.push_back({coating, view, light});
     coats.exact.push_back(environment ? accuracy::smoothEnvironment(coating, view)
                                       : accuracy::smoothDirect(coating, view, light));
   }
   return coats;
 }
 
-std::vector<double> physics(const lang::Library& library, const std::string& profile, bool environment,
-                            const Coats& coats) {
-  graph::Graph graph = graphOf(profile, false, true);
-  const std::string node = environment ? "coat.transmission_ibl" : "coat.transmission_direct";
-  // As in tests/accuracy: a port of the template that takes a factor of that kind.
-  graph.outputs = {{environment ? "emission" : "direct", {graph::NodeRef{node, {}}, {}}}};
-  const ir::Module module = moduleOf(std::move(graph), library);
-  Inputs inputs{{}, coats.points};
-  const size_t points = coats.points.size();
-  std::array<std::vector<double>, 4> columns;  // albedo, tint, the coat's IOR, the base's
-  for (const accuracy::Coating& coating : coats.coatings) {
-    columns[0].insert(columns[0].end(), {coating.albedo, coating.albedo, coating.albedo, 1});
-    columns[1].insert(columns[1].end(), 3, coating.tint);
-    columns[2].push_back(coating.ior);
-    // A base without a boundary: in the coat's medium, where the profile has it there.
-    columns[3].push_back(profile == "physical" ? coating.ior : 1);
-  }
-  inputs.columns["base_color_factor"] = eval::Column::perPoint(4, std::move(columns[0]));
-  inputs.columns["coat_color_factor"] = eval::Column::perPoint(3, std::move(columns[1]));
-  inputs.columns["coat_ior"] = eval::Column::perPoint(1, std::move(columns[2]));
-  inputs.columns["ior"] = eval::Column::perPoint(1, std::move(columns[3]));
-  const std::vector<double> values = reds<double>(module, bound(module, inputs, environment), points);
+std::vector<double> physics(const std::string& profile, bool environment, const Coats& coats) {
+  const accuracy::Light light = environment ? accuracy::Light::Environment : accuracy::Light::Direct;
+  const std::vector<double> values = accuracy::transmissions(profile, light, coats.queries);
   std::vector<double> errors;
-  for (size_t i = 0; i < points; ++i) errors.push_back(std::abs(values[i] - coats.exact[i]));
+  for (size_t i = 0; i < values.size(); ++i) errors.push_back(std::abs(values[i] - coats.exact[i]));
   return errors;
 }
 
@@ -230,7 +209,7 @@ std::vector<Whole> wholes(const lang::Library& library, size_t points) {
       const std::vector<double> more = roundings(library, whole.profile, environment, true, points / 2);
       errors.insert(errors.end(), more.begin(), more.end());
       whole.rounding = spreadOf(std::move(errors));
-      whole.physics = spreadOf(physics(library, whole.profile, environment, coats[environment ? 1 : 0]));
+      whole.physics = spreadOf(physics(whole.profile, environment, coats[environment ? 1 : 0]));
       all.push_back(std::move(whole));
     }
   }
