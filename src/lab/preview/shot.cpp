@@ -81,8 +81,8 @@ void addRow(std::span<const std::array<double, 4>> colors, std::span<const uint3
 
 /// Rows that are shaded together: what a shading prepares for a call takes as long as many samples.
 uint32_t rowsTogether(uint32_t size, uint32_t grid) {
-  constexpr uint32_t kSamples = 2048;
-  return std::clamp(kSamples / (size * grid * grid), 1U, size);
+  constexpr uint32_t kSamplesTogether = 2048;
+  return std::clamp(kSamplesTogether / (size * grid * grid), 1U, size);
 }
 
 void shootRows(const Shading& shading, double radius, uint32_t first, uint32_t end, uint32_t grid, Shot& shot,
