@@ -43,9 +43,9 @@ void bind(ir::Module& module, const OtherLayout& other) {
     kept.push_back(slot);
   }
   for (size_t i = 0; i < used.size(); ++i) {
+    if (!used[i] || given[i] != nullptr) continue;
     ir::TextureSlot& slot = kept[place[i]];
-    if (used[i] && slot.optional && given[i] == nullptr)
-      slot.binding.flat = module.material_textures + next++;
+    if (slot.optional) slot.binding.flat = module.material_textures + next++;
   }
   module.textures = std::move(kept);
   for (const ir::ValueId id : texture_inputs)

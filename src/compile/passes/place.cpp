@@ -70,19 +70,18 @@ std::string_view layerFor(const ir::Dag& dag, ir::ValueId id) {
 }
 
 /// The values of material rate that a faster value or an output reads.
-std::vector<ir::ValueId> frontier(const ir::Module& module) {
+std::vector<ir::ValueId> frontier(const ir::Module& module, const std::vector<ir::ValueId>& live) {
   const ir::Dag& dag = module.dag;
   std::vector<uint8_t> found(dag.size(), false);
   const auto consider = [&](ir::ValueId id) {
     if (dag[id].rate == ir::Rate::Material) found[id] = true;
   };
-  std::vector<ir::ValueId> outputs, values;
-  for (const ir::Output& output : module.outputs) outputs.push_back(output.value);
-  for (const ir::ValueId id : ir::reachable(dag, outputs)) {
+  std::vector<ir::ValueId> values;
+  for (const ir::ValueId id : live) {
     if (dag[id].rate <= ir::Rate::Material) continue;
     for (const ir::ValueId operand : dag[id].operands()) consider(operand);
   }
-  for (const ir::ValueId id : outputs) consider(id);
+  for (const ir::Output& output : module.outputs) consider(output.value);
   for (ir::ValueId id = 0; id < dag.size(); ++id) {
     if (found[id]) values.push_back(id);
   }
@@ -90,10 +89,9 @@ std::vector<ir::ValueId> frontier(const ir::Module& module) {
 }
 
 /// The animated parameters that the outputs read.
-std::vector<ir::ValueId> animatedParameters(const ir::Module& module) {
-  std::vector<ir::ValueId> outputs, values;
-  for (const ir::Output& output : module.outputs) outputs.push_back(output.value);
-  for (const ir::ValueId id : ir::reachable(module.dag, outputs)) {
+std::vector<ir::ValueId> animatedParameters(const ir::Module& module, const std::vector<ir::ValueId>& live) {
+  std::vector<ir::ValueId> values;
+  for (const ir::ValueId id : live) {
     if (module.dag[id].op != ir::Op::Input) continue;
     const ir::Input& input = module.dag.inputOf(id);
     if (input.kind == ir::InputKind::Parameter && module.parameters[input.field].animated)
@@ -119,6 +117,7 @@ std::vector<ir::ValueId> packed(const ir::Dag& dag, const std::vector<ir::ValueI
 
 /// What stands for some values in the rewrite; empty where the value stays.
 struct Placement {
+  std::vector<ir::ValueId> live;     ///< of the outputs, before anything is replaced
   std::vector<uint32_t> field_of;    ///< of a value of material rate that faster ones read: its field
   std::vector<uint32_t> varying_of;  ///< of an Interpolate: its varying
   std::vector<ir::ValueId> read_of;  ///< of a field: the value that reads it, once there is one
@@ -128,7 +127,8 @@ struct Placement {
 /// both.
 void chooseFields(ir::Module& module, const OtherLayout& other, Placement& placement) {
   const std::vector<ir::ValueId> values =
-      packed(module.dag, module.spec_constants ? animatedParameters(module) : frontier(module));
+      packed(module.dag, module.spec_constants ? animatedParameters(module, placement.live)
+                                               : frontier(module, placement.live));
   if (values.empty()) return;
   ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0, ir::kMaterialBinding};
   ir::Names names;
@@ -212,10 +212,12 @@ void chooseVaryings(ir::Module& module, Placement& placement) {
   // Varyings that are there already come from outside: the template has no vertex stage and no Interpolate.
   if (!module.varyings.empty()) return;
   ir::Names names;
-  std::vector<ir::ValueId> live = ir::reachable(module, ir::Stage::Fragment);
-  std::erase_if(live, [&](ir::ValueId id) { return module.dag[id].op != ir::Op::Interpolate; });
+  std::vector<ir::ValueId> found;  // the vertex stage has none
+  for (const ir::ValueId id : placement.live) {
+    if (module.dag[id].op == ir::Op::Interpolate) found.push_back(id);
+  }
   placement.varying_of.resize(module.dag.size(), 0);
-  for (const ir::ValueId id : module.dag.byRank(live)) {
+  for (const ir::ValueId id : module.dag.byRank(found)) {
     const auto index = static_cast<uint32_t>(module.varyings.size());
     placement.varying_of[id] = index;
     module.varyings.push_back(
@@ -232,9 +234,7 @@ public:
   void run() {
     ir::Dag& dag = module_.dag;
     replaced_.assign(dag.size(), ir::kNoValue);
-    std::vector<ir::ValueId> roots;
-    for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
-    for (const ir::ValueId id : ir::reachable(dag, roots)) {
+    for (const ir::ValueId id : placement_.live) {
       dag.setTerm(dag.termOf(id));
       dag.setRank(dag.rankOf(id));
       visit(id);
@@ -303,6 +303,9 @@ void finish(ir::Module& module, Placement& placement) {
 
 void place(ir::Module& module, const OtherLayout& other) {
   Placement placement;
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
+  placement.live = ir::reachable(module.dag, roots);
   nameTextures(module);
   chooseFields(module, other, placement);
   if (module.spec_constants) chooseSpecConstants(module);
