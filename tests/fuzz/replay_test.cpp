@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "mutate.h"
+#include "support/packed_walk.h"
 #include "targets.h"
 
 namespace lacquer::fuzz {
@@ -55,6 +56,12 @@ TEST_P(Replay, changed) {
     EXPECT_EQ(GetParam().feed(both), "") << files[i] << " crossed by " << i << ":\n" << both;
   }
   EXPECT_GE(changed, 3U);
+}
+
+/// A seed of an older version is refused at its head, and the fuzzer finds nothing behind it.
+TEST(ReplayPacked, aSeedIsOfThisVersion) {
+  const fs::path file = fs::path(LACQUER_SOURCE_FOLDER) / "tests/fuzz/corpus/packed/0";
+  EXPECT_NE(test::PackedFile(textOf(file)).top, nullptr);
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Replay, testing::ValuesIn(targets().begin(), targets().end()),
