@@ -1,7 +1,5 @@
 #include "run/program_costs.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <future>
 #include <set>
@@ -14,6 +12,7 @@
 #include "shader/print.h"
 #include "shader/times.h"
 #include "support/blob.h"
+#include "support/jobs.h"
 
 namespace lacquer {
 
@@ -191,7 +190,7 @@ std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Plac
     return group.size() == 1 || structuresOf(group) <= kMostUnited;
   };
   std::vector<Result<ir::Module>> modules(groups.size());
-  tbb::parallel_for(size_t{0}, groups.size(), [&](size_t i) {
+  inParallel(groups.size(), [&](size_t i) {
     const StageTimer timer(setting_.times, StageOfRun::Programs);
     if (by_driver_ || made(groups[i])) modules[i] = moduleOfGroup(groups[i]);
   });
@@ -231,7 +230,7 @@ std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Plac
 std::vector<std::optional<double>> ProgramCosts::byDriver(const std::vector<Places>& groups) {
   if (no_driver_) return std::vector<std::optional<double>>(groups.size());
   std::vector<Result<ir::Module>> modules(groups.size());
-  tbb::parallel_for(size_t{0}, groups.size(), [&](size_t i) {
+  inParallel(groups.size(), [&](size_t i) {
     const StageTimer timer(setting_.times, StageOfRun::Programs);
     modules[i] = moduleOfGroup(groups[i]);
   });
@@ -242,7 +241,7 @@ std::vector<std::optional<double>> ProgramCosts::byDriver(const std::vector<Plac
 std::vector<std::optional<double>> ProgramCosts::cyclesOf(const std::vector<Result<ir::Module>>& modules) {
   std::vector<std::optional<double>> all(modules.size());
   std::vector<Result<cost::Subject>> made(modules.size());
-  tbb::parallel_for(size_t{0}, modules.size(), [&](size_t i) {
+  inParallel(modules.size(), [&](size_t i) {
     const StageTimer timer(setting_.times, StageOfRun::Programs);
     made[i] = modules[i] ? subjectOf(*modules[i], setting_.options) : tl::make_unexpected(modules[i].error());
   });

@@ -1,7 +1,6 @@
 #include "run/programs.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <map>
@@ -10,6 +9,7 @@
 #include "run/program_costs.h"
 #include "structures/describe.h"
 #include "support/file.h"
+#include "support/jobs.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -342,7 +342,7 @@ Result<std::unique_ptr<Sharing>> shareDocument(const material::Document& documen
   const std::vector<Wanted> wanted = wantedOf(document, only, setting.options);
   std::unique_ptr<Sharing> sharing = sharePrograms(setting, structures, [&](Uses& uses) {
     std::vector<Described> described(wanted.size());
-    tbb::parallel_for(size_t{0}, wanted.size(), [&](size_t i) {
+    inParallel(wanted.size(), [&](size_t i) {
       described[i] = describe(wanted[i], document.path, lights, setting, structures);
     });
     for (size_t i = 0; i < wanted.size(); ++i) {

@@ -1,7 +1,5 @@
 #include "run/receipt.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -14,6 +12,7 @@
 #include "setting/option_key.h"
 #include "setting/options.h"
 #include "shader/module.h"
+#include "support/jobs.h"
 #include "targets/target.h"
 
 namespace lacquer {
@@ -49,7 +48,7 @@ constexpr auto kTick = std::chrono::seconds(2);
 constexpr size_t kMany = 512;
 
 void forEach(size_t count, const std::function<void(size_t)>& work) {
-  if (count >= kMany) return tbb::parallel_for(size_t{0}, count, work);
+  if (count >= kMany) return inParallel(count, work);
   for (size_t i = 0; i < count; ++i) work(i);
 }
 

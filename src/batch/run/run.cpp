@@ -1,8 +1,6 @@
 #include "run/run.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <set>
@@ -11,6 +9,7 @@
 #include "setting/options.h"
 #include "shader/print.h"
 #include "structures/contract.h"
+#include "support/jobs.h"
 #include "support/outputs.h"
 #include "support/relative.h"
 #include "support/text.h"
@@ -21,9 +20,9 @@ namespace {
 
 /// So many files are held in memory at once: enough for every thread, few enough that a run over thousands of
 /// files does not grow with their number.
-size_t filesAtOnce() {
+size_t filesAtOnce(size_t files) {
   constexpr size_t kMost = 16;
-  return std::min(kMost, 2 * static_cast<size_t>(tbb::this_task_arena::max_concurrency()));
+  return files <= 1 ? 1 : std::min(kMost, 2 * threads());
 }
 
 constexpr auto kProgressGrain = std::chrono::milliseconds(50);
@@ -104,15 +103,13 @@ bool Run::checkPrograms() {
 void Run::mergePrograms(const std::vector<std::string>& files, InputKind kind,
                         const std::vector<std::string>& only) {
   read_.resize(files.size());
-  tbb::parallel_for(size_t{0}, files.size(),
-                    [&](size_t i) { read_[i] = readInput(files[i], kind, *setting_); });
+  inParallel(files.size(), [&](size_t i) { read_[i] = readInput(files[i], kind, *setting_); });
   programs_ = sharePrograms(*setting_, *structures_, [&](Uses& uses) {
-    const size_t at_once = filesAtOnce();
+    const size_t at_once = filesAtOnce(read_.size());
     for (size_t first = 0; first < read_.size(); first += at_once) {
       std::vector<FileResult> results(std::min(at_once, read_.size() - first));
-      tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
-        results[i] = makeInput(read_[first + i], only, *setting_, *structures_);
-      });
+      inParallel(results.size(),
+                 [&](size_t i) { results[i] = makeInput(read_[first + i], only, *setting_, *structures_); });
       for (const FileResult& result : results) {
         for (const Key& key : result.structures) uses.structure(key);
         for (const MaterialReport& material : result.materials)
@@ -162,10 +159,10 @@ void Run::progress(size_t done, bool last) {
 
 void Run::readAll(const std::vector<std::string>& files, const std::function<FileResult(size_t file)>& read,
                   const std::function<void(FileResult&)>& each) {
-  const size_t at_once = filesAtOnce();
+  const size_t at_once = filesAtOnce(files.size());
   for (size_t first = 0; first < files.size(); first += at_once) {
     std::vector<FileResult> results(std::min(at_once, files.size() - first));
-    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(first + i); });
+    inParallel(results.size(), [&](size_t i) { results[i] = read(first + i); });
     for (size_t i = 0; i < results.size(); ++i) {
       FileResult& result = results[i];
       report(result.diagnostics, files[first + i]);

@@ -1,11 +1,10 @@
 #include "run/shaders.h"
 
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 
 #include "manifest/text.h"
 #include "structures/code.h"
+#include "support/jobs.h"
 
 namespace lacquer {
 
@@ -103,7 +102,7 @@ std::vector<MadeShader> makeShaders(std::map<std::string, Distinct>& shaders, co
   std::atomic<size_t> done{0};
   std::atomic_flag reporting;  // not a mutex: what is called may wait by taking work of this very loop
   const Maker maker(setting, folder, scratch, receipt);
-  tbb::parallel_for(size_t{0}, list.size(), [&](size_t i) {
+  inParallel(list.size(), [&](size_t i) {
     made[i] = maker.make(*list[i].first, *list[i].second);
     const size_t finished = ++done;
     if (reporting.test_and_set(std::memory_order_acquire)) return;

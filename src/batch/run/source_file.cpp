@@ -1,8 +1,6 @@
 #include "run/source_file.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -22,6 +20,7 @@
 #include "shader/module.h"
 #include "structures/describe.h"
 #include "structures/reflection_blob.h"
+#include "support/jobs.h"
 #include "support/relative.h"
 #include "support/text.h"
 
@@ -307,11 +306,8 @@ FileResult SceneFile::run(const material::Document& document) {
   for (size_t first = 0; first < all.size(); first += done.size()) {
     done.clear();
     done.resize(std::min(kMaterialsAtOnce, all.size() - first));
-    // Each thread takes some at a time: a material is a few microseconds when its structure is known.
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, done.size(), 16),
-                      [&](const tbb::blocked_range<size_t>& range) {
-                        for (size_t i = range.begin(); i < range.end(); ++i) done[i] = make(all[first + i]);
-                      });
+    inParallel(
+        done.size(), [&](size_t i) { done[i] = make(all[first + i]); }, kMaterialsTogether);
     const StageTimer timer(setting_.times, StageOfRun::Manifest);
     for (size_t i = 0; i < done.size(); ++i) {
       shapes.material(all[first + i].index, done[i].pipelines);

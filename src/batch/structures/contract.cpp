@@ -1,8 +1,5 @@
 #include "structures/contract.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 
@@ -11,6 +8,7 @@
 #include "manifest/values.h"
 #include "setting/messages.h"
 #include "shader/module.h"
+#include "support/jobs.h"
 
 namespace lacquer {
 
@@ -64,7 +62,7 @@ void makeCode(const Setting& setting, Structures& structures, MadeContract& made
   std::atomic<size_t> done{0};
   std::atomic_flag reporting;  // not a mutex: what is called may wait by taking work of this very loop
   const Coder coder(setting);
-  tbb::parallel_for(size_t{0}, list.size(), [&](size_t i) {
+  inParallel(list.size(), [&](size_t i) {
     made.shaders[i] = coded(*list[i].first, *list[i].second, coder, setting, wrong[i]);
     const size_t finished = ++done;
     if (reporting.test_and_set(std::memory_order_acquire)) return;
@@ -88,11 +86,10 @@ MadeContract contractOf(const material::Document& document, const std::vector<st
   const passes::LightFacts lights = lightFacts(setting.options, lightsOf(document));
   const std::vector<Wanted> wanted = wantedOf(document, only, setting.options);
   std::vector<Described> described(wanted.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, wanted.size(), 16),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i < range.end(); ++i)
-                        described[i] = describe(wanted[i], document.path, lights, setting, structures);
-                    });
+  inParallel(
+      wanted.size(),
+      [&](size_t i) { described[i] = describe(wanted[i], document.path, lights, setting, structures); },
+      kMaterialsTogether);
   made.values.source = document.path;
   made.values.profile = setting.options.profile;
   made.values.targets = setting.options.targets;

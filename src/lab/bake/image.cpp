@@ -1,13 +1,12 @@
 #include "bake/image.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
 #include <stb/stb_image_write.h>
 
+#include "support/jobs.h"
 #include "texture/container.h"
 
 namespace lacquer::baking {
@@ -135,7 +134,8 @@ Image imageOf(const preview::Shading& shading, const Sampling& how, const Rows& 
   Image image{how.size, std::vector<Texel>(size_t{how.size} * how.size)};
   const size_t places = size_t{how.samples} * how.samples;
   std::mutex one_at_a_time;
-  tbb::parallel_for(uint32_t{0}, how.size, [&](uint32_t y) {
+  inParallel(how.size, [&](size_t row) {
+    const auto y = static_cast<uint32_t>(row);
     const std::vector<std::array<double, 4>> values = shading(pointsOf(y, how.size, how.samples));
     for (uint32_t x = 0; x < how.size; ++x) {
       Texel& texel = image.texels[size_t{y} * how.size + x];
@@ -165,7 +165,7 @@ std::vector<Image> withLevels(Image image) {
     const uint32_t size = from.size / 2;
     Image to{size, std::vector<Texel>(size_t{size} * size)};
     const std::vector<Span> spans = spansOf(from.size, size);
-    tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
+    inParallel(size, [&](size_t y) {
       for (uint32_t x = 0; x < size; ++x) {
         Texel& sum = to.texels[size_t{y} * size + x];
         for (size_t j = 0; j < spans[y].weights.size(); ++j) {

@@ -1,12 +1,12 @@
 #include "environment/maps.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <mutex>
+
+#include "support/jobs.h"
 
 namespace lacquer::environment {
 
@@ -83,7 +83,7 @@ public:
   void run(const MapProgress& progress) {
     std::mutex mutex;
     size_t done = 0;
-    tbb::parallel_for(size_t{0}, rows_.size(), [&](size_t i) {
+    inParallel(rows_.size(), [&](size_t i) {
       fill(tree_, rows_[i]);
       if (!progress) return;
       const std::lock_guard lock(mutex);

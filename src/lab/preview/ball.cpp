@@ -1,7 +1,5 @@
 #include "preview/ball.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 
 #include "eval/image.h"
 #include "preview/camera.h"
+#include "support/jobs.h"
 
 namespace lacquer::preview {
 
@@ -287,7 +286,8 @@ std::vector<Rgba> Shading::samples(std::span<const Coverage::Sample> samples, co
 
 Picture drawBall(const Shading& shading, uint32_t size, Color background) {
   Picture picture(size, size, background);
-  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
+  inParallel(size, [&](size_t at) {
+    const auto y = static_cast<uint32_t>(at);
     const Row row = rowOf(y, size);
     drawRow(row, shading(row.points), shading.value(), y, background, picture);
   });
@@ -341,7 +341,8 @@ Comparison compareBalls(const Shading& a, const Shading& b, uint32_t size, Color
       Picture(size, size, background), Picture(size, size, background), Picture(size, size, {}), 1, {}};
   Pixels pixels(size_t{size} * size);
   std::vector<Sums> rows(size);  // added up in their order: the sums do not depend on the threads
-  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
+  inParallel(size, [&](size_t at) {
+    const auto y = static_cast<uint32_t>(at);
     const Row row = rowOf(y, size);
     const std::vector<Rgba> of_a = a(row.points);
     const std::vector<Rgba> of_b = b(row.points);

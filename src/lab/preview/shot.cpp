@@ -1,13 +1,12 @@
 #include "preview/shot.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
 
 #include "preview/camera.h"
+#include "support/jobs.h"
 
 namespace lacquer::preview {
 
@@ -150,8 +149,9 @@ Shot shoot(const Shading& shading, double radius, uint32_t size, uint32_t grid) 
   Shot shot = emptyShot(size);
   std::vector<uint8_t> hit(size_t{size} * size, 0);
   const uint32_t rows = rowsTogether(size, grid);
-  tbb::parallel_for(uint32_t{0}, (size + rows - 1) / rows, [&](uint32_t i) {
-    shootRows(shading, radius, i * rows, std::min((i + 1) * rows, size), grid, shot, hit);
+  inParallel((size + rows - 1) / rows, [&](size_t i) {
+    const uint32_t first = static_cast<uint32_t>(i) * rows;
+    shootRows(shading, radius, first, std::min(first + rows, size), grid, shot, hit);
   });
   noteInside(shot, hit);
   return shot;
@@ -168,8 +168,8 @@ Shot shoot(const Shading& shading, const Coverage& coverage) {
     const auto before = [](const Coverage::Sample& sample, uint32_t pixel) { return sample.pixel < pixel; };
     return static_cast<size_t>(std::lower_bound(all.begin(), all.end(), y * size, before) - all.begin());
   };
-  tbb::parallel_for(uint32_t{0}, (size + together - 1) / together, [&](uint32_t i) {
-    const uint32_t first = i * together, end = std::min((i + 1) * together, size);
+  inParallel((size + together - 1) / together, [&](size_t i) {
+    const uint32_t first = static_cast<uint32_t>(i) * together, end = std::min(first + together, size);
     const size_t begin = placeOf(first);
     const auto samples = all.subspan(begin, placeOf(end) - begin);
     const std::vector<std::array<double, 4>> colors = shading.samples(samples, vertices, coverage.standing);

@@ -1,11 +1,11 @@
 #include "stress/attack.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+
+#include "support/jobs.h"
 
 namespace lacquer::stress {
 
@@ -380,8 +380,7 @@ Report attack(const Subject& subject, const Plan& plan) {
   Finds all;
   for (uint64_t first = 0; first < chunks; first += kAtOnce) {
     std::vector<Finds> finds(static_cast<size_t>(std::min(kAtOnce, chunks - first)));
-    tbb::parallel_for(size_t{0}, finds.size(),
-                      [&](size_t i) { finds[i] = attackChunk(subject, plan, first + i); });
+    inParallel(finds.size(), [&](size_t i) { finds[i] = attackChunk(subject, plan, first + i); });
     for (Finds& own : finds) {
       for (auto& [key, found] : own) {
         Found& sum = all[key];

@@ -22,17 +22,35 @@ namespace {
 
 constexpr uint32_t kLongestName = 255;
 
-/// The length of the symbol that the text begins with; 0 for none.
-uint32_t symbolLength(std::string_view text) {
-  constexpr std::string_view kSingle = "(){}[],;:?=<>+-*/!.%&|^~";
-  constexpr std::string_view kPairs = "-> :: <= >= == != && || ++ -- += -= *= /= %= &= |= ^= << >>";
-  constexpr std::string_view kSecond = ">:=&|+-<";
-  if (text.starts_with("<<=") || text.starts_with(">>=")) return 3;
-  if (text.size() > 1 && kSecond.find(text[1]) != std::string_view::npos &&
-      kPairs.find(text.substr(0, 2)) != std::string_view::npos) {
-    return 2;
+/// The length of the symbol that begins with these characters; 0 for none.
+uint32_t symbolLength(char first, char second, char third) {
+  switch (first) {
+    case '(':
+    case ')':
+    case '{':
+    case '}':
+    case '[':
+    case ']':
+    case ',':
+    case ';':
+    case '?':
+    case '.':
+    case '~': return 1;
+    case '-': return second == '>' || second == '-' || second == '=' ? 2 : 1;
+    case '+': return second == '+' || second == '=' ? 2 : 1;
+    case '&': return second == '&' || second == '=' ? 2 : 1;
+    case '|': return second == '|' || second == '=' ? 2 : 1;
+    case ':': return second == ':' ? 2 : 1;
+    case '<':
+    case '>': return second == first ? (third == '=' ? 3 : 2) : (second == '=' ? 2 : 1);
+    case '=':
+    case '!':
+    case '*':
+    case '/':
+    case '%':
+    case '^': return second == '=' ? 2 : 1;
+    default: return 0;
   }
-  return !text.empty() && kSingle.find(text[0]) != std::string_view::npos ? 1 : 0;
 }
 
 class Lexer {
@@ -51,7 +69,6 @@ public:
 private:
   bool ends(uint32_t ahead = 0) const { return at_ + ahead >= text_.size(); }
   char look(uint32_t ahead = 0) const { return ends(ahead) ? '\0' : text_[at_ + ahead]; }
-  bool starts(std::string_view s) const { return text_.substr(at_).starts_with(s); }
 
   uint32_t lineEnd() const {
     const size_t end = text_.find('\n', at_);
@@ -68,7 +85,7 @@ private:
         ++at_;
       } else if (c != '/') {
         return true;
-      } else if (starts("/*")) {
+      } else if (look(1) == '*') {
         const size_t end = text_.find("*/", at_ + 2);
         if (end == std::string_view::npos) {
           reporter_.error("unterminated-comment", {at_, 2}, "this comment has no end", "close it with '*/'");
@@ -76,7 +93,7 @@ private:
         } else {
           at_ = static_cast<uint32_t>(end) + 2;
         }
-      } else if (starts("//") && !isDoc()) {
+      } else if (look(1) == '/' && !isDoc()) {
         const uint32_t end = lineEnd();
         if (same_line) tokens_.back().comment = trim(text_.substr(at_ + 2, end - at_ - 2));
         at_ = end;
@@ -88,15 +105,15 @@ private:
   }
 
   /// `///` and not a line of slashes.
-  bool isDoc() const { return starts("///") && look(3) != '/'; }
+  bool isDoc() const { return look() == '/' && look(1) == '/' && look(2) == '/' && look(3) != '/'; }
 
   void token() {
     const char c = look();
-    if (isDoc()) return doc();
     if (isNameStart(c)) return name();
+    if (isDoc()) return doc();
     if (isDigit(c) || (c == '.' && isDigit(look(1)))) return number();
     if (c == '"') return string();
-    if (const uint32_t length = symbolLength(text_.substr(at_))) return add(Token::Kind::Symbol, length);
+    if (const uint32_t length = symbolLength(c, look(1), look(2))) return add(Token::Kind::Symbol, length);
     invalid();
   }
 

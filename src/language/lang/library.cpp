@@ -53,8 +53,7 @@ Surroundings::Found Library::Impl::form(std::string_view key) {
 Entry* Library::Impl::find(DeclKind kind, std::string_view name, std::string_view vendor) {
   Entry* entry = known(kind, name, vendor);
   if (entry != nullptr || kind > DeclKind::Node) return entry;
-  wake(name, kind == DeclKind::Const);
-  return known(kind, name, vendor);
+  return wake(name, kind == DeclKind::Const) ? known(kind, name, vendor) : nullptr;
 }
 
 Entry* Library::Impl::homonym(size_t space, std::string_view name, std::string_view vendor) const {
@@ -75,8 +74,7 @@ Entry* Library::Impl::known(DeclKind kind, std::string_view name, std::string_vi
 std::optional<Surroundings::Found> Library::Impl::find(std::string_view name, bool called) {
   auto it = index_[0].find(name);
   if (it == index_[0].end()) {
-    wake(name, !called);
-    it = index_[0].find(name);
+    if (wake(name, !called)) it = index_[0].find(name);
   }
   const Entry* own = it == index_[0].end() ? homonym(0, name, here()) : it->second;
   if (own == nullptr) {

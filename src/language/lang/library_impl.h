@@ -130,8 +130,8 @@ private:
 
   /// Reads the file of the standard nodes that declares the name, if one does; of a form by what stands
   /// before its types.
-  void wake(std::string_view name, bool constants_only);
-  void wakeFile(size_t number);
+  bool wake(std::string_view name, bool constants_only);
+  bool wakeFile(size_t number);
   Entry* known(DeclKind kind, std::string_view name, std::string_view vendor) const;
   /// Of a name that several vendors have: the one of this vendor; null where there is none.
   Entry* homonym(size_t space, std::string_view name, std::string_view vendor) const;

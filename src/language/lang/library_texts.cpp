@@ -73,17 +73,21 @@ void Library::Impl::scanFile(File& file, Diagnostics& errors) {
   errors.insert(errors.end(), found.begin(), found.end());
 }
 
-void Library::Impl::wake(std::string_view name, bool constants_only) {
-  if (!has_standard) return;
-  name = name.substr(0, name.find('<'));
-  const std::span<const EmbeddedName> table = embeddedStandard().names;
-  const auto row =
-      std::lower_bound(table.begin(), table.end(), name,
-                       [](const EmbeddedName& one, std::string_view wanted) { return one.name < wanted; });
-  if (row != table.end() && row->name == name && (row->constant || !constants_only)) wakeFile(row->file);
+bool Library::Impl::wake(std::string_view name, bool constants_only) {
+  if (!has_standard) return false;
+  static const auto kNames = [] {
+    std::unordered_map<std::string_view, const EmbeddedName*> names;
+    const std::span<const EmbeddedName> all = embeddedStandard().names;
+    names.reserve(all.size());
+    for (const EmbeddedName& one : all) names.emplace(one.name, &one);
+    return names;
+  }();
+  const auto row = kNames.find(name.substr(0, name.find('<')));
+  if (row == kNames.end() || (constants_only && !row->second->constant)) return false;
+  return wakeFile(row->second->file);
 }
 
-void Library::Impl::wakeFile(size_t number) {
+bool Library::Impl::wakeFile(size_t number) {
   const std::span<const EmbeddedFile> all = embeddedStandard().files;
   if (standard_.empty()) standard_.resize(all.size());
   std::unique_ptr<Awake>& slot = standard_[number];
@@ -92,10 +96,11 @@ void Library::Impl::wakeFile(size_t number) {
     slot->file.name = all[number].name;
     slot->file.text = all[number].text;
   }
-  if (slot->awake) return;
+  if (slot->awake) return false;
   slot->awake = true;
   woken_.emplace_back(entries.size(), slot.get());
   scanFile(slot->file, scan_errors);
+  return true;
 }
 
 void Library::Impl::wakeAll() {

@@ -1,6 +1,7 @@
 #include "lang/scan.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "lang/lexer.h"
@@ -47,6 +48,7 @@ private:
       while (at_ < text_.size() && isSpace(text_[at_]));
       return;
     }
+    if (!outside() && !atLineStart() && isPlain(c)) return plain();
     if (isNameStart(c)) return word();
     if (c != '/') return other(c);
     const std::string_view rest = text_.substr(at_, 4);
@@ -60,6 +62,24 @@ private:
     } else {
       other(c);
     }
+  }
+
+  /// Within braces only these end what cannot begin a declaration.
+  static bool isPlain(char c) {
+    static constexpr auto kPlain = [] {
+      std::array<bool, 256> plain{};
+      plain.fill(true);
+      for (const char end : {'{', '}', '(', ')', '/', '"', '\n'})
+        plain[static_cast<unsigned char>(end)] = false;
+      return plain;
+    }();
+    return kPlain[static_cast<unsigned char>(c)];
+  }
+
+  void plain() {
+    docs_.reset();
+    do ++at_;
+    while (at_ < text_.size() && isPlain(text_[at_]));
   }
 
   void other(char c) {

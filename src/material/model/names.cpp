@@ -77,6 +77,7 @@ std::optional<uint32_t> VendorNames::find(const std::vector<std::string_view>& v
 std::vector<std::string_view> VendorNames::all() const {
   std::vector<std::string_view> names;
   for (const auto& [name, meaning] : by_name_) names.push_back(name);
+  std::sort(names.begin(), names.end());
   return names;
 }
 

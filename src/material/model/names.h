@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "model/model.h"
@@ -42,7 +43,11 @@ private:
   };
   void qualify(const Meaning& meaning, std::string_view name, const Rename& rename);
 
-  std::map<std::string, Meaning, std::less<>> by_name_;
+  struct Hash {
+    using is_transparent = void;
+    size_t operator()(std::string_view text) const { return std::hash<std::string_view>()(text); }
+  };
+  std::unordered_map<std::string, Meaning, Hash, std::equal_to<>> by_name_;
   std::map<std::pair<std::string_view, std::string_view>, uint32_t> own_;  ///< by vendor and name
   std::set<std::string_view> several_;
 };
