@@ -119,7 +119,8 @@ TEST(Gltf21, QuantizedVerticesNeedNoExtension) {
 
 TEST(Gltf21, OtherFilesScenesAreSaid) {
   const std::string rest = R"(,"files":[{"uri":"car.glb","mimeType":"model/gltf-binary"},{"bufferView":0}],
-    "externalAssets":[{"file":0},{"file":1},{"file":2},{}],"nodes":[{"externalAsset":0}]})";
+    "externalAssets":[{"file":0},{"file":1},{"file":2},{}],"nodes":[{"externalAsset":0},{"externalAsset":7},
+    {"externalAsset":"car"}]})";
   EXPECT_EQ(saidOf(R"({"asset":{"version":"2.1","minVersion":"2.1"})" + rest),
             "x:/externalAssets/0/file: note: nodes show what \"car.glb\" holds [external-asset]\n"
             "  help: shaders for its materials are generated from that file\n"
@@ -128,7 +129,11 @@ TEST(Gltf21, OtherFilesScenesAreSaid) {
             "x:/externalAssets/2/file: error: file 2 is out of range [index-out-of-range]\n"
             "  help: the file has 2 files: an index goes from 0 to 1\n"
             "x:/externalAssets/3: error: the external asset has no \"file\" [missing-property]\n"
-            "  help: it must name a file");
+            "  help: it must name a file\n"
+            "x:/nodes/1/externalAsset: error: external asset 7 is out of range [index-out-of-range]\n"
+            "  help: the file has 4 external assets: an index goes from 0 to 3\n"
+            "x:/nodes/2/externalAsset: error: external asset is a string [wrong-type]\n"
+            "  help: it must be a whole number, an index into the file's external assets");
   EXPECT_EQ(saidOf(R"({"asset":{"version":"2.0"})" + rest), "");
 }
 

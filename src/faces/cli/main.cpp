@@ -471,7 +471,10 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
 
 int run(int argc, char** argv) {
   std::optional<lacquer::cli::Reserve> reserve(std::in_place);  // while CLI11 is at work
-  CLI::App app{"Lacquer turns glTF materials into GLSL, HLSL and SPIR-V.", "lacquer"};
+  CLI::App app{
+      "Lacquer turns glTF materials, MaterialX documents and node graphs into GLSL, HLSL, WGSL, SPIR-V and "
+      "MSL.",
+      "lacquer"};
   app.set_version_flag("--version", std::string(lacquer::version()));
   app.set_help_all_flag("--help-all", "the help of every verb");
   app.require_subcommand(1);

@@ -208,6 +208,9 @@ Json SceneChecker::node(const Json& node, const Path& path) {
     const Path here(path, name);
     int index = -1;
     if (name == "mesh") report_.index(here, "mesh", value, arraySize(root_, "meshes"), "mesh", mesh);
+    if (name == "externalAsset" && isOfVersion(root_, 1))
+      report_.index(here, "external asset", value, arraySize(root_, "externalAssets"), "external asset",
+                    index);
     if (name != "extensions") continue;
     members(value, here, "extensions", [&](std::string_view key, const Json& extension, const Path& p) {
       if (key != kLights && key != kAreaLights && key != kInstances && key != kIesLights) return;

@@ -22,7 +22,6 @@ using lang::Expr;
 using lang::ExprPtr;
 using lang::LineDecl;
 using lang::Span;
-
 namespace {
 
 /// Turns the declarations of one library into a Model.
