@@ -104,10 +104,8 @@ private:
   std::deque<Spirv> made_;  // what the subjects point to stays where it is
 };
 
-/// In processes of their own until `end`, one after the other: the next one begins behind the subject that
-/// the last one died of.
-Measurement compileAll(const Whole& whole, const std::string& family, bool disassembly,
-                       Clock::time_point end) {
+/// Until `end`. Where the driver dies it goes on behind the subject that it died of.
+Measurement compileAll(const Whole& whole, Worker& worker, bool disassembly, Clock::time_point end) {
   Measurement result;
   const std::vector<Stages>& stages = whole.stages;
   const auto miss = [&](size_t i, const std::string& problem) {
@@ -120,7 +118,7 @@ Measurement compileAll(const Whole& whole, const std::string& family, bool disas
       for (; next < stages.size(); ++next) miss(next, "the shaders before it took all of the time");
       break;
     }
-    Work work = compileApart(stages, next, family, disassembly, end);
+    Work work = worker.compile(stages, next, disassembly, end);
     if (!work.driver.empty()) result.driver = work.driver;
     for (Outcome& outcome : work.outcomes) {
       Outcome& mine = result.outcomes[next];
@@ -170,11 +168,18 @@ Measurement spread(const Measurement& pairs, const std::vector<size_t>& of) {
 
 }  // namespace
 
-Measurement measure(const std::vector<Subject>& subjects, const std::string& family, bool disassembly) {
+struct Driver::State {
+  Worker worker;
+};
+
+Driver::Driver(const std::string& family) : state_(new State{Worker(family)}) {}
+Driver::~Driver() = default;
+
+Measurement Driver::measure(const std::vector<Subject>& subjects, bool disassembly) {
   std::vector<Stages> stages;
   for (const Subject& subject : subjects)
     stages.push_back({subject.vertex.empty() ? nullptr : &subject.vertex, &subject.fragment});
-  return compileAll(Whole(std::move(stages)), family, disassembly, Clock::time_point::max());
+  return compileAll(Whole(std::move(stages)), state_->worker, disassembly, Clock::time_point::max());
 }
 
 std::vector<Measurement> measureFiles(const std::vector<FileSubject>& subjects, bool disassembly) {
@@ -186,8 +191,10 @@ std::vector<Measurement> measureFiles(const std::vector<FileSubject>& subjects, 
   const Clock::time_point end = Clock::now() + kTime + whole.stages.size() * kTimeOfEach;
   std::vector<std::future<Measurement>> running;
   for (const std::string& family : kFamilies) {
-    running.push_back(
-        std::async(kBeside, [&, disassembly] { return compileAll(whole, family, disassembly, end); }));
+    running.push_back(std::async(kBeside, [&, disassembly] {
+      Worker worker(family);
+      return compileAll(whole, worker, disassembly, end);
+    }));
   }
   std::vector<Measurement> all;
   for (std::future<Measurement>& one : running) all.push_back(spread(one.get(), of));
@@ -200,7 +207,11 @@ std::string unavailable() { return "this Lacquer was built without Vulkan (or no
 
 std::string driverIdentity() { return {}; }
 
-Measurement measure(const std::vector<Subject>& subjects, const std::string&, bool) {
+struct Driver::State {};
+Driver::Driver(const std::string&) {}
+Driver::~Driver() = default;
+
+Measurement Driver::measure(const std::vector<Subject>& subjects, bool) {
   Outcome outcome;
   outcome.problem = unavailable();
   return {{}, std::vector<Outcome>(subjects.size(), outcome)};
@@ -212,5 +223,9 @@ std::vector<Measurement> measureFiles(const std::vector<FileSubject>& subjects, 
 }
 
 #endif
+
+Measurement measure(const std::vector<Subject>& subjects, const std::string& family, bool disassembly) {
+  return Driver(family).measure(subjects, disassembly);
+}
 
 }  // namespace lacquer::cost

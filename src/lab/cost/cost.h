@@ -62,10 +62,26 @@ std::string unavailable();
 /// names, size and time of modification. Empty where there is no driver or the description names no path.
 std::string driverIdentity();
 
-/// Compiles each subject for a family as RADV_FORCE_FAMILY names it. The driver works in a child process with
-/// an environment of its own: the caller's is neither changed nor passed on, and a driver that crashes or
-/// takes more than a minute over one shader, or more than 2 GiB of memory, costs only that shader's numbers.
-/// Safe to call from several threads.
+/// The driver of one family, as RADV_FORCE_FAMILY names it, in a child process with an environment of its
+/// own: the caller's is neither changed nor passed on, and a driver that crashes or takes more than a minute
+/// over one shader, or more than 2 GiB of memory, costs only that shader's numbers. It is begun with the
+/// first subject, which takes twenty times as long as a shader, and ends with the object. One caller at a
+/// time.
+class Driver {
+public:
+  explicit Driver(const std::string& family);
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
+  ~Driver();
+
+  Measurement measure(const std::vector<Subject>& subjects, bool disassembly);
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The same with a driver for this call. Safe to call from several threads.
 Measurement measure(const std::vector<Subject>& subjects, const std::string& family, bool disassembly);
 
 /// For each of kFamilies, at the same time. Each pair of modules is compiled once, however many subjects have

@@ -1,7 +1,7 @@
 // The driver reads its settings from the environment when it is opened, serves one family for the life of a
 // process, and may crash on a module that no validator has seen. So it lives in a fork: the child alone
-// changes its environment, and sends what it found through a pipe. The validator works there, too: an
-// untrusted module may break it as well.
+// changes its environment, takes one subject after the other from a socket, and sends back what it found. The
+// validator works there, too: an untrusted module may break it as well.
 #ifdef LACQUER_VULKAN
 #include "cost/worker.h"
 
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +22,7 @@
 #include <fstream>
 #include <mutex>
 #include <new>
+#include <set>
 #include <utility>
 
 #include "check/check.h"
@@ -51,10 +53,16 @@ struct Head {
   Statistics statistics;
 };
 
+/// What the parent sends before a subject's words.
+struct Order {
+  uint32_t vertex_size = 0, fragment_size = 0;  // words
+  uint32_t foreign_vertex = 0, foreign_fragment = 0, disassembly = 0;
+};
+
 bool writeAll(int pipe, const void* data, size_t size) {
   const char* at = static_cast<const char*>(data);
   while (size > 0) {
-    const ssize_t written = write(pipe, at, size);
+    const ssize_t written = ::send(pipe, at, size, MSG_NOSIGNAL);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return false;
     at += written;
@@ -126,7 +134,6 @@ std::string objection(const Stages& subject) {
 bool handle(int pipe, const Device& device, const Stages& subject, bool disassembly) {
   Outcome outcome;
   try {
-    if (subject.vertex == nullptr) return send(pipe, Kind::Outcome, outcome);
     outcome.problem = objection(subject);
     if (outcome.problem.empty()) {
       if (!send(pipe, Kind::Valid, {})) return false;
@@ -139,9 +146,25 @@ bool handle(int pipe, const Device& device, const Stages& subject, bool disassem
   return send(pipe, Kind::Outcome, outcome);
 }
 
-[[noreturn]] void work(int pipe, const std::vector<Stages>& subjects, size_t first, const std::string& family,
-                       bool disassembly) {
-  signal(SIGPIPE, SIG_IGN);
+/// Waits for them. False at the end.
+bool take(int pipe, void* data, size_t size) {
+  char* at = static_cast<char*>(data);
+  while (size > 0) {
+    const ssize_t got = read(pipe, at, size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    at += got;
+    size -= static_cast<size_t>(got);
+  }
+  return true;
+}
+
+bool takeWords(int pipe, Spirv& words, size_t size) {
+  words.resize(size);
+  return take(pipe, words.data(), size * sizeof(uint32_t));
+}
+
+[[noreturn]] void work(int pipe, const std::string& family) {
   const std::string manifest = radvManifest();
   prepareEnvironment(family, manifest);
   // The driver talks: "not a conformant implementation".
@@ -153,8 +176,12 @@ bool handle(int pipe, const Device& device, const Stages& subject, bool disassem
   const bool begun = problem.empty();
   if (!send(pipe, begun ? Kind::Driver : Kind::Stop, {{}, {}, begun ? device.driver : problem}) || !begun)
     _exit(0);
-  for (size_t i = first; i < subjects.size(); ++i) {
-    if (!handle(pipe, device, subjects[i], disassembly)) break;
+  Order order;
+  Spirv vertex, fragment;
+  while (take(pipe, &order, sizeof order) && takeWords(pipe, vertex, order.vertex_size) &&
+         takeWords(pipe, fragment, order.fragment_size)) {
+    const Stages subject{&vertex, &fragment, order.foreign_vertex != 0, order.foreign_fragment != 0};
+    if (!handle(pipe, device, subject, order.disassembly != 0)) break;
   }
   // No destructors: the driver's threads and the parent's objects are not this process' to end.
   _exit(0);
@@ -198,33 +225,69 @@ Read receive(int pipe, Kind& kind, Outcome& outcome, Clock::time_point end) {
   return state;
 }
 
-/// Forks; the child runs `body` with the pipe's writing end. -1 with a problem's text when that fails.
+/// The parent's ends of all lines. A child that kept another's would hide from that one that the parent has
+/// ended.
+struct Lines {
+  std::mutex mutex;
+  std::set<int> open;
+};
+Lines& lines() {
+  static Lines& all = *new Lines;
+  return all;
+}
+
+/// Forks; the child runs `body` with its end of a socket. -1 with a problem's text when that fails.
 template <class Body>
-pid_t startChild(int& reading, std::string& problem, const Body& body) {
-  // One at a time: a child that inherits another's writing end would hide that one's death.
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
+pid_t startChild(int& line, std::string& problem, const Body& body) {
+  Lines& known = lines();
+  const std::lock_guard lock(known.mutex);
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    problem = fmt::format("no pipe: {}", std::strerror(errno));
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    problem = fmt::format("no socket: {}", std::strerror(errno));
     return -1;
   }
   const pid_t child = fork();
   if (child == 0) {
     // What is thrown must not lead back into the parent's code.
     try {
+      close(ends[0]);
+      for (const int other : known.open) close(other);
       body(ends[1]);
     } catch (...) {
     }
     _exit(1);
   }
   close(ends[1]);
-  reading = ends[0];
+  line = ends[0];
   if (child < 0) {
     problem = fmt::format("no child process: {}", std::strerror(errno));
     close(ends[0]);
+    return child;
   }
+  known.open.insert(line);
   return child;
+}
+
+bool give(int line, const Stages& subject, bool disassembly) {
+  const Order order{static_cast<uint32_t>(subject.vertex->size()),
+                    static_cast<uint32_t>(subject.fragment->size()), subject.foreign_vertex ? 1U : 0U,
+                    subject.foreign_fragment ? 1U : 0U, disassembly ? 1U : 0U};
+  return writeAll(line, &order, sizeof order) &&
+         writeAll(line, subject.vertex->data(), subject.vertex->size() * sizeof(uint32_t)) &&
+         writeAll(line, subject.fragment->data(), subject.fragment->size() * sizeof(uint32_t));
+}
+
+/// Has one subject compiled. `compiling`: whether the driver had it when the child died.
+Read compiled(int line, const Stages& subject, bool disassembly, Clock::time_point end, bool& compiling,
+              Outcome& outcome) {
+  if (!give(line, subject, disassembly)) return Read::End;
+  for (Kind kind = Kind::Valid; kind != Kind::Outcome;) {
+    outcome = {};
+    const Read state = receive(line, kind, outcome, std::min(end, Clock::now() + kPatience));
+    if (state != Read::Good) return state;
+    compiling = kind == Kind::Valid;
+  }
+  return Read::Good;
 }
 
 /// What a child died of, for a message.
@@ -236,36 +299,61 @@ std::string causeOf(Read state, bool compiling) {
 
 }  // namespace
 
-Work compileApart(const std::vector<Stages>& subjects, size_t first, const std::string& family,
-                  bool disassembly, Clock::time_point end) {
-  Work result;
-  int pipe = -1;
-  const pid_t child = startChild(pipe, result.problem,
-                                 [&](int writing) { work(writing, subjects, first, family, disassembly); });
-  if (child < 0) return result;
-  bool compiling = false, begun = false;
-  Read state = Read::Good;
-  while (result.problem.empty() && first + result.outcomes.size() < subjects.size()) {
-    Kind kind = Kind::Outcome;
-    Outcome outcome;
-    state = receive(pipe, kind, outcome, std::min(end, Clock::now() + kPatience));
-    if (state != Read::Good) break;
-    compiling = kind == Kind::Valid;
-    switch (kind) {
-      case Kind::Driver:
-        begun = true;
-        result.driver = outcome.problem;
-        break;
-      case Kind::Valid: break;
-      case Kind::Outcome: result.outcomes.push_back(std::move(outcome)); break;
-      case Kind::Stop: result.problem = outcome.problem; break;
-    }
+void Worker::end() {
+  if (child_ < 0) return;
+  {
+    Lines& known = lines();
+    const std::lock_guard lock(known.mutex);
+    known.open.erase(line_);
+    close(line_);
   }
-  if (state != Read::Good) result.fatal = causeOf(state, compiling || !begun);
-  close(pipe);
-  if (state == Read::Hung) kill(child, SIGKILL);
+  kill(child_, SIGKILL);  // it may hang; what it found has arrived
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  }
+  child_ = -1;
+}
+
+/// False with a text in the result when there is no driver.
+bool Worker::begin(Work& result, Clock::time_point end) {
+  if (child_ < 0) {
+    child_ = startChild(line_, result.problem, [&](int line) { work(line, family_); });
+    if (child_ < 0) return false;
+    Kind kind = Kind::Stop;
+    Outcome outcome;
+    const Read state = receive(line_, kind, outcome, std::min(end, Clock::now() + kPatience));
+    if (state != Read::Good) {
+      result.fatal = causeOf(state, true);
+    } else if (kind != Kind::Driver) {
+      result.problem = outcome.problem;
+    }
+    if (state != Read::Good || kind != Kind::Driver) {
+      this->end();
+      return false;
+    }
+    driver_ = outcome.problem;
+  }
+  result.driver = driver_;
+  return true;
+}
+
+Work Worker::compile(const std::vector<Stages>& subjects, size_t first, bool disassembly,
+                     Clock::time_point end) {
+  Work result;
+  while (first + result.outcomes.size() < subjects.size()) {
+    const Stages& subject = subjects[first + result.outcomes.size()];
+    Outcome outcome;
+    if (subject.vertex != nullptr) {
+      if (!begin(result, end)) break;
+      bool compiling = false;
+      const Read state = compiled(line_, subject, disassembly, end, compiling, outcome);
+      if (state != Read::Good) {
+        result.fatal = causeOf(state, compiling);
+        this->end();
+        break;
+      }
+    }
+    result.outcomes.push_back(std::move(outcome));
   }
   return result;
 }

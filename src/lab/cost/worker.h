@@ -2,6 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cost/cost.h"
 
@@ -24,8 +27,25 @@ struct Work {
   std::string fatal;    ///< what it died of over the next subject
 };
 
-/// Compiles the subjects from `first` on for a family, until `end`.
-Work compileApart(const std::vector<Stages>& subjects, size_t first, const std::string& family,
-                  bool disassembly, Clock::time_point end);
+/// A child process with the driver of one family: begun when it is first needed, and again when it has died.
+/// One caller at a time.
+class Worker {
+public:
+  explicit Worker(std::string family) : family_(std::move(family)) {}
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+  ~Worker() { end(); }
+
+  /// Compiles the subjects from `first` on, until `end`.
+  Work compile(const std::vector<Stages>& subjects, size_t first, bool disassembly, Clock::time_point end);
+
+private:
+  bool begin(Work& result, Clock::time_point end);
+  void end();
+
+  std::string family_, driver_;
+  int line_ = -1;  ///< the parent's end
+  int child_ = -1;
+};
 
 }  // namespace lacquer::cost

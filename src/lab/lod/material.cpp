@@ -309,7 +309,7 @@ Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Modul
     if (!subject) return tl::make_unexpected(std::move(subject.error()));
     subjects.push_back(std::move(*subject));
   }
-  const cost::Measurement measured = cost::measure(subjects, cost::kFamilies[0], quarters);
+  const cost::Measurement measured = compiler_.measure(subjects, quarters);
   if (!measured.driver.empty()) driver_ = measured.driver;
   for (size_t i = 0; i < figures.size(); ++i) {
     const cost::Outcome& outcome = measured.outcomes[i];

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cost/cost.h"
 #include "eval/material.h"
 #include "lod/search.h"
 #include "preview/shot.h"
@@ -108,6 +109,7 @@ private:
   std::map<lod::Words, std::string> ids_;
   std::map<std::string, LevelFigures> figures_;  ///< by shader
   std::string driver_;
+  cost::Driver compiler_{cost::kFamilies[0]};
   std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
 };
 
