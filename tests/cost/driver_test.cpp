@@ -177,6 +177,34 @@ TEST_F(Driver, ABrokenModuleCostsOnlyItsOwnNumbers) {
   EXPECT_GT(measured.outcomes[5].statistics->instructions, measured.outcomes[0].statistics->instructions);
 }
 
+/// The process of one is not another's: it goes on behind a module that it dies of, and when others end.
+TEST_F(Driver, LivesForManyCalls) {
+  const Spirv vertex = compile(kVertex, check::Stage::Vertex);
+  const Subject good{"good", vertex, compile(kShort, check::Stage::Fragment)};
+  std::vector<Subject> broken(3, good);
+  broken[0].fragment = {1, 2, 3};
+  broken[1].fragment.resize(good.fragment.size() * 3 / 4);
+  for (size_t i = good.fragment.size() - 12; i < good.fragment.size(); ++i) broken[2].fragment[i] ^= 0x5aU;
+  cost::Driver one("navi21");
+  const Measurement first = one.measure({good}, false);
+  ASSERT_TRUE(first.outcomes[0].statistics) << first.outcomes[0].problem;
+  {
+    cost::Driver other("gfx1100");
+    EXPECT_TRUE(other.measure({good}, false).outcomes[0].statistics);
+    for (const Subject& bad : broken) {
+      EXPECT_FALSE(one.measure({bad}, false).outcomes[0].statistics);
+      const Measurement again = one.measure({good, bad, good}, true);
+      EXPECT_EQ(again.driver, first.driver);
+      EXPECT_EQ(again.outcomes[0].statistics, first.outcomes[0].statistics);
+      EXPECT_FALSE(again.outcomes[1].statistics);
+      EXPECT_EQ(again.outcomes[2].statistics, first.outcomes[0].statistics);
+      EXPECT_NE(again.outcomes[2].disassembly, "");
+    }
+  }
+  EXPECT_TRUE(one.measure({}, false).outcomes.empty());
+  EXPECT_EQ(one.measure({good}, false).outcomes[0].statistics, first.outcomes[0].statistics);
+}
+
 TEST_F(Driver, AnUnknownFamilyIsAProblem) {
   const Measurement measured =
       measure({{"short", {}, compile(kShort, check::Stage::Fragment)}}, "navi99", false);
