@@ -193,6 +193,8 @@ export class Viewport {
   playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
   /** Told before each picture whether something asks for the time. */
   onClock: (asked: boolean) => void = () => {};
+  /** Told after each picture. */
+  onDrawn: () => void = () => {};
   private ticked = 0;
   useBall = true;
   lights: Light[] = kStudioLights;
@@ -335,7 +337,11 @@ export class Viewport {
   draw(): void {
     this.pending = 0;
     this.tick();
-    if (this.gpu) return this.gpu.paint(this, this.sized(this.gpu.canvas));
+    if (this.gpu) this.gpu.paint(this, this.sized(this.gpu.canvas));
+    else this.drawHere();
+    this.onDrawn();
+  }
+  private drawHere(): void {
     const { width, height } = this.sized(this.canvas);
     const target = this.targetOf(width, height);
     const environment = environmentOf(this.environment);

@@ -1,0 +1,168 @@
+// What the material stands in: lamps with handles and a turned environment, by mouse, finger and key, in both renderers.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { hasWebGpu, kWebGpu, launch } from './browser.mjs';
+import { begin, downloaded, drop, end, open, painted } from './page.mjs';
+
+before(begin);
+after(end);
+
+/** Of a window in which there is room for handles. */
+const kRoom = { width: 960, height: 560 };
+const stage = (page) => page.evaluate(() => window.lacquerPage.document.stage);
+const centre = async (locator) => {
+  const { x, y, width, height } = await locator.boundingBox();
+  return { x: x + width / 2, y: y + height / 2 };
+};
+const lampAt = (page, i) => centre(page.locator('.lamp').nth(i));
+/** The picture's mean colours left and right of its middle, by what draws it. */
+const halves = (page) => page.evaluate(async () => {
+  const { viewport } = window.lacquerPage;
+  const { canvas } = viewport.gpu ?? viewport;
+  const pixels = viewport.gpu ? await viewport.gpu.pixels(viewport, canvas.width, canvas.height) : viewport.pixels();
+  const { width, height } = canvas;
+  const sums = [0, 0, 0, 0, 0, 0];
+  const half = Math.floor(width / 2);
+  for (let i = 0; i < width * height; ++i) {
+    const x = i % width;
+    if (x < half || x >= width - half) for (let c = 0; c < 3; ++c) sums[c + (x < half ? 0 : 3)] += pixels[4 * i + c];
+  }
+  return { left: sums.slice(0, 3).map((x) => x / (width * height)), right: sums.slice(3).map((x) => x / (width * height)) };
+});
+const total = ([r, g, b]) => r + g + b;
+async function drag(page, from, to) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 8; ++i) await page.mouse.move(from.x + ((to.x - from.x) * i) / 8, from.y + ((to.y - from.y) * i) / 8);
+  await page.mouse.up();
+  await painted(page);
+}
+/** Fingers that go from places to others. */
+async function fingers(page, from, to) {
+  const session = await page.context().newCDPSession(page);
+  await session.send('Emulation.setTouchEmulationEnabled', { enabled: true, maxTouchPoints: 2 });
+  const send = (type, at) => session.send('Input.dispatchTouchEvent', { type, touchPoints: at.map(({ x, y }, id) => ({ x, y, id })) });
+  await send('touchStart', from);
+  for (let i = 1; i <= 8; ++i) await send('touchMove', from.map(({ x, y }, k) => ({ x: x + ((to[k].x - x) * i) / 8, y: y + ((to[k].y - y) * i) / 8 })));
+  await send('touchEnd', []);
+  await session.send('Emulation.setTouchEmulationEnabled', { enabled: false });
+  await session.detach();
+  await painted(page);
+}
+async function only(page, lamp) {
+  await page.selectOption('#environment', 'Dark');
+  await page.selectOption('#lamps', 'placed');
+  await page.uncheck(`[aria-label="Lamp ${3 - lamp} is on"]`);
+  await painted(page);
+}
+async function withWebGpu(t, files, use) {
+  const by = await launch(...kWebGpu);
+  try {
+    await open(files, async (page) => {
+      if (!(await hasWebGpu(page))) return t.skip('this browser has no WebGPU');
+      await page.selectOption('#painter', 'webgpu');
+      await page.waitForSelector('#viewport-gpu:not([hidden])');
+      await use(page);
+    }, { by, size: kRoom });
+  } finally {
+    await by.close();
+  }
+}
+
+test('a lamp goes where its handle is dragged, over the edge to the back, by mouse and finger, and a step back takes it there again', () =>
+  open(['examples/core.gltf'], async (page) => {
+    await only(page, 1);
+    const middle = await centre(page.locator('#picture'));
+    const [first] = (await stage(page)).lamps;
+    const lit = await halves(page);
+    assert.ok(total(lit.left) > total(lit.right), JSON.stringify(lit));
+    await drag(page, await lampAt(page, 0), { x: middle.x + 40, y: middle.y - 15 });
+    const at = await lampAt(page, 0);
+    assert.ok(Math.hypot(at.x - middle.x - 40, at.y - middle.y + 15) < 3, `${at.x - middle.x}, ${at.y - middle.y}`);
+    const dragged = await halves(page);
+    assert.ok(total(dragged.right) > total(dragged.left), JSON.stringify(dragged));
+    // One drag is one step.
+    await page.keyboard.press('Control+z');
+    assert.deepEqual((await stage(page)).lamps[0], first);
+    assert.deepEqual(await halves(page), lit);
+    await page.click('#redo');
+    assert.deepEqual(await halves(page), dragged);
+    // Over the edge and back it is behind, where it lights what is not seen.
+    await page.mouse.move(at.x, at.y);
+    await page.mouse.down();
+    for (const x of [middle.x + 200, middle.x + 300, middle.x + 40]) await page.mouse.move(x, middle.y);
+    await page.mouse.up();
+    await page.waitForSelector('.lamp.behind');
+    const behind = await halves(page);
+    assert.ok(total(behind.left) + total(behind.right) < total(dragged.left) + total(dragged.right), JSON.stringify(behind));
+    const from = await lampAt(page, 0);
+    await fingers(page, [from], [{ x: middle.x - 30, y: middle.y }]);
+    const touched = await lampAt(page, 0);
+    assert.ok(Math.hypot(touched.x - middle.x + 30, touched.y - middle.y) < 3, `${touched.x - middle.x}, ${touched.y - middle.y}`);
+  }, { size: kRoom }));
+
+test('keys move a lamp and change it; its colour, its strength and whether it is on are seen', () =>
+  open(['examples/core.gltf'], async (page) => {
+    await only(page, 1);
+    const [before] = (await stage(page)).lamps;
+    await page.focus('.lamp >> nth=0');
+    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', '+']) await page.keyboard.press(key);
+    const [after] = (await stage(page)).lamps;
+    assert.ok(after.yaw > before.yaw && after.pitch > before.pitch && after.strength > before.strength, JSON.stringify(after));
+    const white = await halves(page);
+    await page.fill('[aria-label="Colour of lamp 1"]', '#ff0000');
+    const red = await halves(page);
+    assert.ok(red.left[0] - red.left[1] > white.left[0] - white.left[1] + 1, `${white.left} ${red.left}`);
+    await page.focus('[aria-label="Strength of lamp 1"]');
+    await page.keyboard.press('End');
+    assert.ok((await halves(page)).left[0] > red.left[0] + 1);
+    await page.focus('.lamp >> nth=0');
+    await page.keyboard.press('Space');
+    assert.equal((await stage(page)).lamps[0].on, false);
+    const dark = await halves(page);
+    assert.ok(total(dark.left) < total(red.left));
+    await page.keyboard.press('Control+z');
+    assert.equal((await stage(page)).lamps[0].on, true);
+    await page.selectOption('#lamps', 'none');
+    assert.ok(await page.isHidden('.lamp >> nth=0'));
+    await page.click('#undo');
+    assert.equal(await page.inputValue('#lamps'), 'placed');
+    assert.ok(await page.isVisible('.lamp >> nth=0'));
+  }, { size: kRoom }));
+
+test('the lamps light what WebGPU draws, as in WebGL 2', (t) => withWebGpu(t, ['examples/core.gltf'], async (page) => {
+  await only(page, 1);
+  const middle = await centre(page.locator('#picture'));
+  await drag(page, await lampAt(page, 0), { x: middle.x + 40, y: middle.y });
+  await page.fill('[aria-label="Colour of lamp 1"]', '#ff0000');
+  await page.focus('[aria-label="Strength of lamp 1"]');
+  await page.keyboard.press('End');
+  const there = await halves(page);
+  assert.ok(there.right[0] > there.left[0] + 1 && there.right[0] > there.right[2] + 1, JSON.stringify(there));
+  await page.selectOption('#painter', 'webgl');
+  await page.waitForSelector('#viewport:not([hidden])');
+  const here = await halves(page);
+  for (const side of ['left', 'right']) here[side].forEach((x, i) => assert.ok(Math.abs(x - there[side][i]) < 0.5, `${JSON.stringify([here, there])}`));
+}));
+
+test('the lamps are in the draft and in the exported file', () =>
+  open(['examples/core.gltf'], async (page) => {
+    await page.selectOption('#lamps', 'placed');
+    await page.focus('.lamp >> nth=1');
+    await page.keyboard.press('ArrowLeft');
+    const kept = await stage(page);
+    await page.waitForFunction(() => window.lacquerPage.files.kept === window.lacquerPage.document.state);
+    await page.reload();
+    await page.waitForSelector('body.ready');
+    assert.equal(await page.inputValue('#lamps'), 'studio');
+    await page.click('#drafts >> text=Open the draft');
+    await page.waitForSelector('.lamp >> nth=1');
+    assert.deepEqual(await stage(page), kept);
+    const exported = JSON.parse(await downloaded(page, '#export'));
+    assert.deepEqual(exported.extras.lacquer.stage, kept);
+    // What a file of somebody else's says there is taken as far as it can be.
+    exported.extras.lacquer.stage = { placed: true, lamps: [{ yaw: 1e300, color: 'red;', strength: 'much' }], turn: null };
+    await drop(page, [['odd.gltf', Buffer.from(JSON.stringify(exported))]]);
+    const { lamps: [lamp], turn } = await stage(page);
+    assert.deepEqual([lamp.yaw, lamp.color, lamp.strength, turn], [Math.PI, '#fffcf7', 1, 0]);
+  }, { size: kRoom }));
