@@ -5,7 +5,7 @@ import { radianceOf, readHdr } from './hdr';
 import { Lamps } from './lamps';
 import { fileLights, kStudioLights, type Light } from './lights';
 import type { Page } from './main';
-import { kStage, lightsOf, type Lamp, type Stage } from './stage';
+import { around, kStage, lightsOf, type Lamp, type Stage } from './stage';
 import type { Viewport } from './viewport';
 
 /** Texels of a side of the cube that an environment of one's own is filtered into. */
@@ -30,6 +30,9 @@ export class Around {
       viewport.background = byId<HTMLSelectElement>('background').value as Viewport['background'];
       viewport.redraw();
     });
+    const turn = byId<HTMLInputElement>('turn');
+    this.on('turn', 'input', () => this.turnTo((turn.valueAsNumber * Math.PI) / 180, false));
+    this.on('turn', 'change', () => this.turnTo(this.stage.turn, true));
     this.on('brightness', 'input', () => {
       viewport.brightness = Number(byId<HTMLInputElement>('brightness').value);
       page.relight();
@@ -64,6 +67,8 @@ export class Around {
     if (lamps.value !== 'placed') this.before = lamps.value;
     const lights: Record<string, Light[]> = { studio: kStudioLights, own: this.ownLights, none: [] };
     viewport.lights = lights[lamps.value] ?? lightsOf(this.stage);
+    viewport.turn = this.stage.turn;
+    byId<HTMLInputElement>('turn').valueAsNumber = Math.round((this.stage.turn * 180) / Math.PI);
     this.lamps.show();
     viewport.redraw();
   }
@@ -73,6 +78,14 @@ export class Around {
     if (placed !== this.stage.placed) this.set({ ...this.stage, placed }, 'lamps', true);
     this.show();
     this.page.relight();
+  }
+
+  /** Turns what is around, by so much or to an angle. */
+  turnBy(angle: number, done: boolean): void {
+    this.turnTo(around(this.stage.turn + angle), done);
+  }
+  private turnTo(turn: number, done: boolean): void {
+    this.set({ ...this.stage, turn }, 'turn', done);
   }
 
   private changeLamp(index: number, to: Partial<Lamp>, done: boolean): void {

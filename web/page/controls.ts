@@ -25,8 +25,9 @@ export function connectTabs(changed: () => void): void {
   });
 }
 
-/** Mouse, fingers and keys turn what is on either canvas. */
-export function connectPointer(viewport: Viewport): void {
+/** Mouse, fingers and keys turn what is on either canvas; with Shift `turnAround` is told by how much what is around turns, and
+ * whether that is all for now. */
+export function connectPointer(viewport: Viewport, turnAround: (angle: number, done: boolean) => void): void {
   const { orbit } = viewport;
   const turn = (x: number, y: number) => {
     orbit.yaw -= x;
@@ -41,19 +42,33 @@ export function connectPointer(viewport: Viewport): void {
     ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     '+': () => near(0.9), '-': () => near(1.1),
   };
+  const shifted: Record<string, () => void> = { ArrowLeft: () => turnAround(-0.1, false), ArrowRight: () => turnAround(0.1, false) };
   for (const canvas of [byId('viewport'), byId('viewport-gpu')]) {
-    canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener('pointermove', (event) => {
-      if (event.buttons & 1) turn(event.movementX / 150, event.movementY / 150);
+    let turning = false;
+    const settle = () => {
+      if (turning) turnAround(0, true);
+      turning = false;
+    };
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      turning = event.shiftKey;
     });
+    canvas.addEventListener('pointermove', (event) => {
+      if (!(event.buttons & 1)) return;
+      if (turning) turnAround(event.movementX / 150, false);
+      else turn(event.movementX / 150, event.movementY / 150);
+    });
+    for (const end of ['pointerup', 'pointercancel', 'keyup', 'blur']) canvas.addEventListener(end, settle);
     canvas.addEventListener('wheel', (event) => {
       event.preventDefault();
       near(Math.exp(event.deltaY / 900));
     }, { passive: false });
     canvas.addEventListener('keydown', (event) => {
-      if (!steps[event.key]) return;
+      const act = (event.shiftKey ? shifted[event.key] : undefined) ?? steps[event.key];
+      if (!act || event.ctrlKey || event.metaKey) return;
       event.preventDefault();
-      steps[event.key]();
+      turning ||= act === shifted[event.key];
+      act();
     });
     new ResizeObserver(() => viewport.redraw()).observe(canvas);
   }

@@ -73,9 +73,9 @@ export class Page {
     byId('version').textContent = lacquer.version;
     this.fillSelects();
     this.connectControls();
-    connectPointer(viewport);
     this.files = new Files(this);
     this.around = new Around(this);
+    connectPointer(viewport, (angle, done) => this.around.turnBy(angle, done));
     connectCode(this);
   }
 

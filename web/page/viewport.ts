@@ -2,7 +2,7 @@
 import type { Interface, Shader } from '../src/index';
 import type { Pass } from '../src/types';
 import { Behind, backgroundLevel, kTriangleVertex, lastLod, type Background, type Copy } from './behind';
-import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
+import { constantEnvironment, environmentOf, Turned, type Cube, type Environment } from './environment';
 import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gltf';
 import type { GpuPainter } from './gpu';
 import { isCount, item, list } from '../src/json';
@@ -86,6 +86,8 @@ interface Target {
 interface Maps {
   specular: WebGLTexture;
   irradiance: WebGLTexture;
+  /** Of the environment's specular map. */
+  version: number;
   /** What is seen through what transmits. */
   behind?: WebGLTexture;
 }
@@ -184,6 +186,9 @@ export class Viewport {
   middle: Vec3 = [0, 0, 0];
   radius = 1;
   environment = 'Studio';
+  /** Of what is around, about +y. */
+  turn = 0;
+  private readonly turned = new Turned();
   exposure = 1;
   background: Background = 'plain';
   /** What is around is as bright. */
@@ -344,7 +349,7 @@ export class Viewport {
   private drawHere(): void {
     const { width, height } = this.sized(this.canvas);
     const target = this.targetOf(width, height);
-    const environment = environmentOf(this.environment);
+    const environment = this.around();
     if (this.other?.difference) return this.drawDifference(target, environment, this.other.look);
     const cut = this.cut(width);
     const sides: Side[] = [{ instead: null, from: 0, to: cut }];
@@ -377,6 +382,10 @@ export class Viewport {
     this.present(target, -10, this.second);
   }
 
+  /** The environment, turned. */
+  around(): Environment {
+    return this.turned.of(environmentOf(this.environment), this.turn);
+  }
   /** The column from which on the other look is seen. */
   cut(width: number): number {
     return this.other ? Math.round(width * this.other.split) : width;
@@ -583,7 +592,7 @@ export class Viewport {
     const draw = (look: Look) => {
       const { gl } = this;
       const target = this.makeTarget(size, size);
-      this.drawAll(target, environmentOf(this.environment), [{ instead: look, from: 0, to: size }]);
+      this.drawAll(target, this.around(), [{ instead: look, from: 0, to: size }]);
       this.resolve(target);
       gl.bindFramebuffer(gl.FRAMEBUFFER, target.resolved);
       const pixels = new Float32Array(4 * size * size);
@@ -610,25 +619,36 @@ export class Viewport {
 
   private mapsOf(environment: Environment): Maps {
     let made = this.maps.get(environment);
+    const { specular, irradiance } = environment;
     if (!made) {
-      made = { specular: this.cubeTexture(environment.specular), irradiance: this.cubeTexture(environment.irradiance) };
+      made = { specular: this.cubeTexture(specular), irradiance: this.cubeTexture(irradiance), version: specular.version };
       this.maps.set(environment, made);
+    }
+    if (made.version !== specular.version) {
+      this.fillCube(made.specular, specular);
+      this.fillCube(made.irradiance, irradiance);
+      made.version = specular.version;
     }
     return made;
   }
-  private cubeTexture({ size, levels }: Cube): WebGLTexture {
+  private cubeTexture(cube: Cube): WebGLTexture {
     const { gl } = this;
     const texture = gl.createTexture()!;
     gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
-    gl.texStorage2D(gl.TEXTURE_CUBE_MAP, levels.length, gl.RGBA16F, size, size);
+    gl.texStorage2D(gl.TEXTURE_CUBE_MAP, cube.levels.length, gl.RGBA16F, cube.size, cube.size);
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    this.fillCube(texture, cube);
+    return texture;
+  }
+  private fillCube(texture: WebGLTexture, { size, levels }: Cube): void {
+    const { gl } = this;
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
     levels.forEach((faces, level) => {
       const width = Math.max(1, size >> level);
       faces.forEach((texels, i) =>
         gl.texSubImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + i, level, 0, 0, width, width, gl.RGBA, gl.FLOAT, texels),
       );
     });
-    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-    return texture;
   }
 
   private upload(drawable: Drawable, uploaded = new Map<ArrayBufferView, WebGLBuffer>()): Mesh {

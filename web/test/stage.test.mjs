@@ -166,3 +166,53 @@ test('the lamps are in the draft and in the exported file', () =>
     const { lamps: [lamp], turn } = await stage(page);
     assert.deepEqual([lamp.yaw, lamp.color, lamp.strength, turn], [Math.PI, '#fffcf7', 1, 0]);
   }, { size: kRoom }));
+
+test('what is around turns by a slider, a drag with Shift and keys, with its background, as WebGL 2 and WebGPU draw it; a step back turns it back', (t) =>
+  withWebGpu(t, ['examples/core.gltf'], async (page) => {
+    await page.selectOption('#lamps', 'none');
+    await page.selectOption('#background', 'environment');
+    const before = await halves(page);
+    await page.focus('#turn');
+    for (let i = 0; i < 3; ++i) await page.keyboard.press('PageUp');
+    const { turn } = await stage(page);
+    assert.ok(turn > 0.3, `${turn}`);
+    await page.keyboard.press('End');
+    assert.ok((await stage(page)).turn > 3.1);
+    const there = await halves(page);
+    assert.ok(Math.abs(total(there.left) - total(before.left)) > 5, JSON.stringify([before, there]));
+    await page.selectOption('#painter', 'webgl');
+    await page.waitForSelector('#viewport:not([hidden])');
+    const here = await halves(page);
+    for (const side of ['left', 'right']) here[side].forEach((x, i) => assert.ok(Math.abs(x - there[side][i]) < 0.5, `${JSON.stringify([here, there])}`));
+    // The material's light is the turned one, too, and no more programs nor textures are made for another angle.
+    await page.selectOption('#background', 'plain');
+    const lit = await halves(page);
+    const orbit = await page.evaluate(() => ({ ...window.lacquerPage.viewport.orbit }));
+    const middle = await centre(page.locator('#picture'));
+    await page.evaluate(() => {
+      const { viewport } = window.lacquerPage;
+      window.before = viewport.programCount;
+      window.made = 0;
+      const own = viewport.gl.createTexture;
+      viewport.gl.createTexture = function () { ++window.made; return own.call(this); };
+    });
+    await page.keyboard.down('Shift');
+    await drag(page, middle, { x: middle.x - 200, y: middle.y + 30 });
+    await page.keyboard.up('Shift');
+    assert.ok(Math.abs((await stage(page)).turn - (Math.PI - 200 / 150)) < 0.02, JSON.stringify(await stage(page)));
+    assert.deepEqual(await page.evaluate(() => ({ ...window.lacquerPage.viewport.orbit })), orbit);
+    const dragged = await halves(page);
+    assert.ok(Math.abs(total(dragged.left) - total(lit.left)) > 0.5, JSON.stringify([lit, dragged]));
+    assert.deepEqual(await page.evaluate(() => [window.made, window.lacquerPage.viewport.programCount - window.before]), [0, 0]);
+    await page.keyboard.press('Control+z');
+    assert.deepEqual(await halves(page), lit);
+    await page.focus('#viewport');
+    await page.keyboard.press('Shift+ArrowLeft');
+    const kept = await stage(page);
+    assert.ok(kept.turn < 3.1);
+    await page.waitForFunction(() => window.lacquerPage.files.kept === window.lacquerPage.document.state);
+    await page.reload();
+    await page.click('#drafts >> text=Open the draft');
+    await page.waitForFunction(() => document.getElementById('turn').valueAsNumber > 100);
+    assert.deepEqual(await stage(page), kept);
+  }));
