@@ -1,6 +1,7 @@
 // What is around the material: its environment, background and lamps, as the controls below the picture and the document have them.
 import { byId, h } from './dom';
 import { addEnvironment, kEnvironments } from './environment';
+import { readExr } from './exr';
 import { radianceOf, readHdr } from './hdr';
 import { Lamps } from './lamps';
 import { fileLights, kStudioLights, type Light } from './lights';
@@ -110,9 +111,10 @@ export class Around {
   /** An environment of the user's own. */
   surround(name: string, bytes: Uint8Array): void {
     try {
-      addEnvironment(name, radianceOf(readHdr(bytes)), kOwnEnvironment);
+      const picture = /\.exr$/i.test(name) ? readExr(bytes) : readHdr(bytes);
+      addEnvironment(name, radianceOf(picture), kOwnEnvironment);
     } catch (error) {
-      return this.page.fail(error);
+      return this.page.fail(new Error(`${name}: ${error instanceof Error ? error.message : String(error)}`));
     }
     const choice = byId<HTMLSelectElement>('environment');
     if (![...choice.options].some(({ value }) => value === name)) choice.append(h('option', {}, name));

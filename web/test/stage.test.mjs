@@ -1,6 +1,8 @@
 // What the material stands in: lamps with handles and a turned environment, by mouse, finger and key, in both renderers.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { DataTexture, FloatType, RGBAFormat } from 'three';
+import { EXRExporter, NO_COMPRESSION, ZIP_COMPRESSION, ZIPS_COMPRESSION } from 'three/examples/jsm/exporters/EXRExporter.js';
 import { hasWebGpu, kWebGpu, launch } from './browser.mjs';
 import { begin, downloaded, drop, end, open, painted } from './page.mjs';
 
@@ -216,3 +218,56 @@ test('what is around turns by a slider, a drag with Shift and keys, with its bac
     await page.waitForFunction(() => document.getElementById('turn').valueAsNumber > 100);
     assert.deepEqual(await stage(page), kept);
   }));
+
+/** A .exr file of a colour above and one below, as three.js writes it. */
+async function exr(above, below, compression, type = FloatType) {
+  const [width, height] = [64, 32];
+  const data = new Float32Array(4 * width * height);
+  // A texture's rows run from below.
+  for (let i = 0; i < width * height; ++i) data.set([...(i < (width * height) / 2 ? below : above), 1], 4 * i);
+  return Buffer.from(await new EXRExporter().parse(Object.assign(new DataTexture(data, width, height, RGBAFormat, FloatType), { needsUpdate: true }), { type, compression }));
+}
+
+test('environments in OpenEXR light as they say, compressed or not; a broken one is refused by name, and what is seen stays', () =>
+  open(['examples/core.gltf'], async (page) => {
+    await page.selectOption('#lamps', 'none');
+    const seen = (name) => page.evaluate((name) => {
+      const it = window.lacquerPage;
+      const point = { n: [0, 0, 1], t: [1, 0, 0, 1], l: [0, 0, 1], light: [0, 0, 0], uv: [0.3, 0.6] };
+      return [it.viewport.probe(it.lookNow(), point, name), it.viewport.probe(it.lookNow(), { ...point, env: [2, 1, 0.5] })];
+    }, name);
+    for (const [name, compression] of [['plain.exr', NO_COMPRESSION], ['zip.EXR', ZIP_COMPRESSION], ['zips.exr', ZIPS_COMPRESSION]]) {
+      await drop(page, [[name, await exr([2, 1, 0.5], [2, 1, 0.5], compression)]]);
+      assert.equal(await page.inputValue('#environment'), name);
+      const [own, constant] = await seen(name);
+      own.forEach((x, i) => assert.ok(Math.abs(x - constant[i]) < 0.01, `${name}: ${own} is not ${constant}`));
+    }
+    const upright = await exr([4, 4, 4], [0, 0, 0], ZIP_COMPRESSION);
+    await drop(page, [['upright.exr', upright]]);
+    await page.selectOption('#background', 'environment');
+    const rows = () => page.evaluate(() => {
+      const { viewport } = window.lacquerPage;
+      viewport.orbit.pitch = 0;
+      const pixels = viewport.pixels();
+      return [pixels[0], pixels[pixels.length - 4]];
+    });
+    assert.deepEqual((await rows()).map((x) => x > 128), [true, false]);
+    const before = await rows();
+    const raw = await exr([4, 4, 4], [0, 0, 0], NO_COMPRESSION);
+    const with64 = (bytes, at, value) => { const made = Buffer.from(bytes); made.writeBigUInt64LE(value, at); return made; };
+    const sized = (bytes) => { const made = Buffer.from(bytes); made.writeInt32LE(0x7ffffff0, made.indexOf('dataWindow\0') + 'dataWindow\0box2i\0'.length + 4 + 8); return made; };
+    // Of 32 rows, each in a chunk of its own, the first behind the table.
+    const table = [...raw.keys()].find((at) => raw.readBigUInt64LE(at) === BigInt(at + 8 * 32));
+    for (const [name, bytes, says] of [
+      ['cut.exr', upright.subarray(0, -40), /cut\.exr: the picture ends too early/], ['raw.exr', raw.subarray(0, -40), /ends too early/],
+      ['head.exr', raw.subarray(0, 100), /ends too early/], ['text.exr', Buffer.from('a text, and no picture'), /text\.exr: this is no OpenEXR picture/],
+      ['empty.exr', Buffer.alloc(0), /no OpenEXR/], ['huge.exr', sized(raw), /of 2147483633 by 32 is not read/],
+      ['odd.exr', with64(raw, table, 1n), /odd\.exr: the picture says wrongly/],
+      ['garbled.exr', Buffer.from(upright).fill(0x55, upright.length - 60), /garbled\.exr: the picture cannot be decoded/],
+    ]) {
+      await drop(page, [[name, bytes]]);
+      assert.match(await page.textContent('#status'), says);
+      assert.equal(await page.inputValue('#environment'), 'upright.exr');
+      assert.deepEqual(await rows(), before);
+    }
+  }, { size: kRoom }));
