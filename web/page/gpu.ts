@@ -4,8 +4,9 @@ import { backgroundLevel, kBoard, lastLod } from './behind';
 import type { Cube, Environment } from './environment';
 import type { Drawable } from '../src/gltf';
 import { multiply } from '../src/math';
+import { neutral } from './shapes';
 import type { Pass } from '../src/types';
-import { dropOldest, frameBlocks, kBlocks, kLocations, kSolid, kSorted, neutral, slotKey, type Look, type Viewport } from './viewport';
+import { dropOldest, frameBlocks, kBlocks, kLocations, kSolid, kSorted, slotKey, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
 declare const GPUMapMode: Record<'READ', number>;

@@ -8,7 +8,7 @@ import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
 import { costTable, errorTable, type Costs, type Errors } from './costs';
 import { Document, type Input } from './document';
-import { byId, h, tell } from './dom';
+import { byId, download, h, tell } from './dom';
 import { Files } from './files';
 import { fromBase64 } from '../src/gltf';
 import { GpuPainter } from './gpu';
@@ -75,7 +75,7 @@ export class Page {
     this.connectControls();
     this.files = new Files(this);
     this.around = new Around(this);
-    connectPointer(viewport, (angle, done) => this.around.turnBy(angle, done));
+    connectPointer(viewport, { turnAround: (angle, done) => this.around.turnBy(angle, done), pick: (x, y) => this.pick(x, y) });
     connectCode(this);
   }
 
@@ -218,6 +218,27 @@ export class Page {
     this.viewport.shown = material;
     this.properties.show(this.of);
     this.compile();
+  }
+
+  /** Chooses the material that is seen there. */
+  private pick(x: number, y: number): void {
+    const material = this.viewport.materialAt(x, y);
+    if (material === undefined || !this.of || material === this.of.material) return;
+    if (material === kDefaultMaterial || material >= this.of.names.length) return this.note('what is seen there has no material: it is drawn with the default one');
+    this.choose(material);
+  }
+
+  /** The picture as it is seen, without the page. */
+  private async savePicture(): Promise<void> {
+    const { viewport } = this;
+    const { gpu } = viewport;
+    viewport.draw();
+    const { width, height } = gpu?.canvas ?? viewport.canvas;
+    const canvas = new OffscreenCanvas(width, height);
+    const pixels = gpu ? await gpu.pixels(viewport, width, height) : viewport.pixels();
+    canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(pixels), width, height), 0, 0);
+    const bytes = new Uint8Array(await (await canvas.convertToBlob({ type: 'image/png' })).arrayBuffer());
+    download(`${(this.of?.file.name ?? 'lacquer').replace(/\.[^.]*$/, '')}.png`, bytes, 'image/png');
   }
 
   // ---- compiling
@@ -635,6 +656,8 @@ export class Page {
       this.viewport.useBall = byId<HTMLSelectElement>('shape').value === 'ball';
       this.viewport.fit();
     });
+    this.on('whole', 'click', () => this.viewport.fit());
+    this.on('save-picture', 'click', () => void this.savePicture().catch((error: unknown) => this.fail(error)));
     this.on('exposure', 'input', () => {
       this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);
       this.viewport.redraw();

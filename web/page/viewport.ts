@@ -7,8 +7,9 @@ import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gl
 import type { GpuPainter } from './gpu';
 import { isCount, item, list } from '../src/json';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
-import { add, cross, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
-import { ball, flatDrawable } from './shapes';
+import { add, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
+import { firstMet } from './pick';
+import { ball, cornersUv, flatDrawable, neutral } from './shapes';
 import { kShowFragment } from './tone';
 
 /** A glTF texture's index, its colour space, and where the graph has it how it is looked up, as a glTF sampler: else as the file's
@@ -55,6 +56,8 @@ interface Side {
   to: number;
 }
 
+/** Radii from the middle to the eye, at first. */
+const kDistance = 3.4;
 /** Programs that are kept; of more, the oldest that nothing is drawn with goes. */
 export const kMostPrograms = 48;
 export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough', 'Clock'];
@@ -104,31 +107,12 @@ export function dropOldest<T>(programs: Map<string, T>, used: Set<string>): T[] 
   return dropped;
 }
 
-/** Texture coordinates of a square from -1 to 1 across z with `uv` in its middle. They change just so much that a shader
- * without vertex tangents, which asks their derivatives, finds the frame of `n` and `t`. */
-function cornersUv({ n, t, uv }: { n: Vec3; t: number[]; uv: number[] }): number[] {
-  const flat = (x: Vec3) => [x[0] - (n[0] * x[2]) / n[2], x[1] - (n[1] * x[2]) / n[2]];
-  const along: Vec3 = [t[0], t[1], t[2]];
-  const [u, v] = [flat(along), flat(scale(cross(n, along), -t[3]))];
-  const step = 1e-3 / (u[0] * v[1] - u[1] * v[0]);
-  return [[-1, -1], [1, -1], [1, 1], [-1, 1]].flatMap(([x, y]) => [
-    uv[0] + step * (x * v[1] - y * v[0]), uv[1] + step * (y * u[0] - x * u[1]),
-  ]);
-}
-
 /** Texels that all images of a file may have together: 256 MB. */
 const kMostTexels = 2 ** 26;
 
 /** Pixels of a side that each of so many images may have, a power of two; larger ones are shown smaller. */
 export function mostPixels(images: number): number {
   return 2 ** Math.floor(Math.log2(Math.sqrt(kMostTexels / Math.max(images, 1))));
-}
-
-/** What stands for an absent image. */
-export function neutral(slot: string): [number, number, number, number] {
-  if (slot.endsWith('normal_texture')) return [128, 128, 255, 255];
-  if (slot.endsWith('anisotropy_texture')) return [255, 128, 255, 255];
-  return [255, 255, 255, 255];
 }
 
 /** What frameBlocks() is told beside the camera. `lod` is the last of scene_behind, whose rows run `down` the screen or up. */
@@ -182,7 +166,7 @@ export class Viewport {
   private second: Target | null = null;
   private pending = 0;
 
-  orbit = { yaw: 0.35, pitch: 0.2, distance: 3.4 };
+  orbit = { yaw: 0.35, pitch: 0.2, distance: kDistance };
   middle: Vec3 = [0, 0, 0];
   radius = 1;
   environment = 'Studio';
@@ -245,7 +229,23 @@ export class Viewport {
     const { middle, radius } = own ? bounds(this.meshes.map((m) => m.drawable)) : { middle: [0, 0, 0] as Vec3, radius: 1 };
     this.middle = middle;
     this.radius = radius;
+    this.orbit.distance = kDistance;
     this.redraw();
+  }
+  /** Moves what is looked at to the right and up, by halves of the picture's height. */
+  pan(right: number, up: number): void {
+    const view = lookAt(this.eye(), this.middle);
+    const by = this.orbit.distance * this.radius * Math.tan(0.36);
+    this.middle = this.middle.map((x, i) => x + by * (right * view[4 * i] + up * view[4 * i + 1])) as Vec3;
+    this.redraw();
+  }
+  /** The material of the file's own that is seen at a place of the picture, from -1 to 1. */
+  materialAt(x: number, y: number): number | undefined {
+    if (this.useBall) return undefined;
+    const canvas = this.gpu?.canvas ?? this.canvas;
+    const rays = this.rays(canvas.clientWidth / Math.max(canvas.clientHeight, 1));
+    const along = [0, 1, 2].map((i) => x * rays[i] + y * rays[3 + i] + rays[6 + i]) as Vec3;
+    return firstMet(this.meshes.map(({ drawable }) => drawable), this.eye(), along)?.material;
   }
 
   /** Loads the file's textures that a look has, then draws again. */
