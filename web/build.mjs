@@ -80,6 +80,7 @@ async function makePage() {
   const bundle = await build({
     entryPoints: [join(here, 'page/main.ts')], bundle: true, format: 'esm', target: 'es2022', minify: true, write: false,
     define: { 'import.meta.url': 'location.href' }, legalComments: 'inline', external: ['./packed.js'],
+    plugins: [{ name: 'three', setup: ({ onResolve }) => onResolve({ filter: /^three$/ }, () => ({ path: join(here, 'page/exr_parts.ts') })) }],
   });
   const inScript = (text) => text.replace(/<\/script/gi, '<\\/script');
   const samples = readdirSync(examples).filter((name) => name.endsWith('.gltf')).sort().map((name) => embedded(join(examples, name)));

@@ -25,8 +25,19 @@ export function connectTabs(changed: () => void): void {
   });
 }
 
-/** Mouse, fingers and keys turn what is on either canvas. */
-export function connectPointer(viewport: Viewport): void {
+/** Pixels that a pointer may go between down and up, and it is still a click. */
+const kClick = 4;
+
+interface Acts {
+  /** Turns what is around; whether that is all for now. */
+  turnAround(angle: number, done: boolean): void;
+  /** A click at a place of the picture, from -1 to 1, y up. */
+  pick(x: number, y: number): void;
+}
+
+/** What a mouse, fingers and keys do on either canvas: a drag turns the picture, with Shift what is around; with Ctrl, the right button
+ * or two fingers it moves it; a wheel or two fingers come nearer. */
+export function connectPointer(viewport: Viewport, acts: Acts): void {
   const { orbit } = viewport;
   const turn = (x: number, y: number) => {
     orbit.yaw -= x;
@@ -39,21 +50,68 @@ export function connectPointer(viewport: Viewport): void {
   };
   const steps: Record<string, () => void> = {
     ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
-    '+': () => near(0.9), '-': () => near(1.1),
+    '+': () => near(0.9), '-': () => near(1.1), f: () => viewport.fit(), F: () => viewport.fit(),
+  };
+  const shifted: Record<string, () => void> = { ArrowLeft: () => acts.turnAround(-0.1, false), ArrowRight: () => acts.turnAround(0.1, false) };
+  const held: Record<string, () => void> = {
+    ArrowLeft: () => viewport.pan(-0.1, 0), ArrowRight: () => viewport.pan(0.1, 0), ArrowUp: () => viewport.pan(0, 0.1), ArrowDown: () => viewport.pan(0, -0.1),
   };
   for (const canvas of [byId('viewport'), byId('viewport-gpu')]) {
-    canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener('pointermove', (event) => {
-      if (event.buttons & 1) turn(event.movementX / 150, event.movementY / 150);
+    const down = new Map<number, { x: number; y: number }>();
+    let turning = false;
+    let panning = false;
+    /** How far the pointer has gone; no number once it is no click. */
+    let gone = NaN;
+    const settle = () => {
+      if (turning) acts.turnAround(0, true);
+      turning = false;
+    };
+    /** The middle of the pointers, and how far they are apart. */
+    const span = () => {
+      const [a, b = a] = [...down.values()];
+      return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.hypot(a.x - b.x, a.y - b.y) };
+    };
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      gone = down.size === 1 && event.button === 0 && !event.shiftKey && !event.ctrlKey ? 0 : NaN;
+      turning = event.shiftKey;
+      panning = event.ctrlKey || event.button !== 0;
     });
+    canvas.addEventListener('pointermove', (event) => {
+      const last = down.get(event.pointerId);
+      if (!last || down.size > 2) return;
+      const before = span();
+      down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      const { x, y, apart } = span();
+      const [across, along] = [x - before.x, y - before.y];
+      gone += Math.hypot(across, along);
+      if (down.size === 2 || panning) viewport.pan((-2 * across) / canvas.clientHeight, (2 * along) / canvas.clientHeight);
+      else if (turning) acts.turnAround(across / 150, false);
+      else turn(across / 150, along / 150);
+      if (down.size === 2) near(Math.max(before.apart, 1) / Math.max(apart, 1));
+    });
+    for (const end of ['pointerup', 'pointercancel'] as const) {
+      canvas.addEventListener(end, (event) => {
+        down.delete(event.pointerId);
+        settle();
+        if (end === 'pointercancel' || !(gone < kClick)) return;
+        const { left, top, width, height } = canvas.getBoundingClientRect();
+        acts.pick((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height);
+      });
+    }
+    for (const end of ['keyup', 'blur']) canvas.addEventListener(end, settle);
+    canvas.addEventListener('contextmenu', (event) => event.preventDefault()); // the right button moves the picture
     canvas.addEventListener('wheel', (event) => {
       event.preventDefault();
       near(Math.exp(event.deltaY / 900));
     }, { passive: false });
     canvas.addEventListener('keydown', (event) => {
-      if (!steps[event.key]) return;
+      const act = event.ctrlKey || event.metaKey ? held[event.key] : (event.shiftKey ? shifted[event.key] : undefined) ?? steps[event.key];
+      if (!act) return;
       event.preventDefault();
-      steps[event.key]();
+      turning ||= act === shifted[event.key];
+      act();
     });
     new ResizeObserver(() => viewport.redraw()).observe(canvas);
   }

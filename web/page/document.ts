@@ -1,9 +1,10 @@
 // The file that is edited: what is read from it, what changes it, and the way back.
 import type { Attribute, Lacquer, Message } from '../src/index';
 import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
-import { list } from '../src/json';
+import { item, list } from '../src/json';
 import { asGltf, isDocument } from './foreign';
 import { kOwnNodes } from './nodetext';
+import { kStage, stageOf, type Stage } from './stage';
 
 export interface Input {
   name: string;
@@ -14,10 +15,11 @@ export interface Input {
 /** All that an edit may change of one material. */
 interface Snapshot {
   index: number;
-  material: string; // JSON
+  material?: string; // JSON; none where the file has no materials
   extensionsUsed: string; // JSON
   graph: string | null;
   layout: string;
+  stage: Stage;
   state: number;
 }
 
@@ -33,6 +35,8 @@ export class Document {
   /** What reading a MaterialX document has said. */
   readonly said: Message[] = [];
   material = 0;
+  /** What it stands in. */
+  stage: Stage = kStage;
   /** The graph in its JSON form where it was edited itself; then the material only gives its parameters' values. */
   graphs = new Map<number, string>();
   /** JSON: where the boxes are of graphs that are made of properties. */
@@ -66,6 +70,7 @@ export class Document {
   private takeExtras(lacquer: Lacquer): void {
     const nodes = this.json.extras?.lacquer?.nodes;
     if (typeof nodes === 'string') this.nodeText = nodes;
+    if (this.json.extras?.lacquer?.stage !== undefined) this.stage = stageOf(this.json.extras.lacquer.stage);
     const options = this.nodeText ? { node_texts: { [kOwnNodes]: this.nodeText } } : undefined;
     forget(this.json);
     list(this.json.materials).forEach((material, i) => {
@@ -90,7 +95,8 @@ export class Document {
     const used = new Set<number>();
     indicesIn(materials, used);
     const json = materials ? withoutUnused({ ...this.json, materials }, this.own, used) : this.json;
-    return this.nodeText ? withLacquer(json, { nodes: this.nodeText }) : json;
+    const stage = this.stage === kStage ? {} : { stage: this.stage };
+    return this.nodeText || this.stage !== kStage ? withLacquer(json, { ...stage, ...(this.nodeText && { nodes: this.nodeText }) }) : json;
   }
 
 
@@ -176,6 +182,11 @@ export class Document {
     else this.graphs.set(this.material, text);
   }
 
+  setStage(stage: Stage, key: string): void {
+    this.keep(`stage ${key}`);
+    this.stage = stage;
+  }
+
   get layout(): string {
     return this.layouts.get(this.material) ?? '';
   }
@@ -227,10 +238,11 @@ export class Document {
   private snapshot(index: number): Snapshot {
     return {
       index,
-      material: JSON.stringify(this.json.materials[index]),
+      material: JSON.stringify(item(this.json.materials, index)),
       extensionsUsed: JSON.stringify(this.json.extensionsUsed ?? []),
       graph: this.graphs.get(index) ?? null,
       layout: this.layouts.get(index) ?? '',
+      stage: this.stage,
       state: this.state,
     };
   }
@@ -239,11 +251,12 @@ export class Document {
     if (!target) return;
     to.push(this.snapshot(target.index));
     this.material = target.index;
-    this.json.materials[target.index] = JSON.parse(target.material);
+    if (target.material !== undefined) this.json.materials[target.index] = JSON.parse(target.material);
     this.json.extensionsUsed = JSON.parse(target.extensionsUsed);
     if (target.graph === null) this.graphs.delete(target.index);
     else this.graphs.set(target.index, target.graph);
     this.layouts.set(target.index, target.layout);
+    this.stage = target.stage;
     this.state = target.state;
     this.settle();
   }
@@ -308,6 +321,7 @@ function forget(of: any): void {
   if (typeof of?.extras?.lacquer !== 'object' || of.extras.lacquer === null) return;
   delete of.extras.lacquer.graph;
   delete of.extras.lacquer.nodes;
+  delete of.extras.lacquer.stage;
   if (Object.keys(of.extras.lacquer).length === 0) delete of.extras.lacquer;
   if (Object.keys(of.extras).length === 0) delete of.extras;
 }

@@ -124,6 +124,8 @@ export function irradianceOf(radiance: Radiance): (normal: Vec3) => Vec3 {
 export interface Cube {
   size: number;
   levels: Float32Array[][];
+  /** Another one when its texels are others. */
+  version: number;
 }
 
 /** The two maps that shaders are given (docs/bindings.md). */
@@ -135,7 +137,7 @@ export interface Environment {
 
 function cube(size: number, levels: number, value: (d: Vec3, level: number) => Vec3): Cube {
   const of = (level: number) => [0, 1, 2, 3, 4, 5].map((i) => face(i, Math.max(1, size >> level), (d) => value(d, level)));
-  return { size, levels: Array.from({ length: levels }, (_, level) => of(level)) };
+  return { size, levels: Array.from({ length: levels }, (_, level) => of(level)), version: 0 };
 }
 
 export function makeEnvironment(radiance: Radiance, size: number): Environment {
@@ -167,4 +169,58 @@ export function environmentOf(name: string): Environment {
 /** One of the user's own, in place of what had that name. */
 export function addEnvironment(name: string, radiance: Radiance, size: number): void {
   made.set(name, makeEnvironment(radiance, size));
+}
+
+/** Where a direction comes to lie in a cube: the face, and in it from -1 to 1. */
+function placeIn([x, y, z]: Vec3): [number, number, number] {
+  const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
+  if (ax >= ay && ax >= az) return x > 0 ? [0, -z / ax, -y / ax] : [1, z / ax, -y / ax];
+  if (ay >= az) return y > 0 ? [2, x / ay, z / ay] : [3, x / ay, -z / ay];
+  return z > 0 ? [4, x / az, -y / az] : [5, -x / az, -y / az];
+}
+
+/** A level of a cube turned about +y: each texel is read between those of its direction's face. */
+function turnLevel(from: Float32Array[], to: Float32Array[], angle: number): void {
+  const size = Math.round(Math.sqrt(from[0].length / 4));
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  for (let index = 0; index < 6; ++index) {
+    for (let at = 0; at < size * size; ++at) {
+      const [x, y, z] = kFaces[index]((2 * (at % size) + 1) / size - 1, (2 * Math.floor(at / size) + 1) / size - 1);
+      const [face, s, t] = placeIn([x * cos - z * sin, y, x * sin + z * cos]);
+      const u = Math.min(Math.max(((s + 1) * size - 1) / 2, 0), size - 1);
+      const v = Math.min(Math.max(((t + 1) * size - 1) / 2, 0), size - 1);
+      const [u0, v0] = [Math.floor(u), Math.floor(v)];
+      const [u1, v1] = [Math.min(u0 + 1, size - 1), Math.min(v0 + 1, size - 1)];
+      const [a, b] = [u - u0, v - v0];
+      const texels = from[face];
+      for (let c = 0; c < 4; ++c) {
+        const upper = texels[4 * (v0 * size + u0) + c] * (1 - a) + texels[4 * (v0 * size + u1) + c] * a;
+        const lower = texels[4 * (v1 * size + u0) + c] * (1 - a) + texels[4 * (v1 * size + u1) + c] * a;
+        to[index][4 * at + c] = upper * (1 - b) + lower * b;
+      }
+    }
+  }
+}
+
+/** Environments turned about +y, in maps that are made once for each and filled again for another angle. */
+export class Turned {
+  private readonly made = new WeakMap<Environment, { turned: Environment; angle: number }>();
+
+  of(environment: Environment, angle: number): Environment {
+    if (angle === 0) return environment;
+    let known = this.made.get(environment);
+    if (!known) {
+      const same = ({ size, levels }: Cube): Cube => ({ size, levels: levels.map((faces) => faces.map((texels) => texels.slice())), version: 0 });
+      const { specular, irradiance, lastLevel } = environment;
+      known = { turned: { specular: same(specular), irradiance: same(irradiance), lastLevel }, angle: 0 };
+      this.made.set(environment, known);
+    }
+    if (known.angle === angle) return known.turned;
+    known.angle = angle;
+    for (const map of ['specular', 'irradiance'] as const) {
+      environment[map].levels.forEach((faces, level) => turnLevel(faces, known.turned[map].levels[level], angle));
+      ++known.turned[map].version;
+    }
+    return known.turned;
+  }
 }

@@ -73,8 +73,8 @@ export class Files {
     const bytesOf = async (file: File) => new Uint8Array(await file.arrayBuffer());
     const graph = files.find(({ name }) => name.endsWith('.json'));
     if (graph && page.document?.names.length) return page.openGraph(graph.name, await graph.text());
-    const around = files.find(({ name }) => /\.hdr$/i.test(name));
-    if (around) return page.surround(around.name, await bytesOf(around));
+    const around = files.find(({ name }) => /\.(hdr|exr)$/i.test(name));
+    if (around) return page.around.surround(around.name, await bytesOf(around));
     if (files.length > 0 && files.every(({ name }) => kPictures.test(name))) return page.fail(new Error(`${files[0].name} is a picture: drop it on the slot of a texture, at the left`));
     const documents = new Map<string, Uint8Array>();
     for (const file of files) if (isDocument(file.name)) documents.set(file.name, await bytesOf(file));

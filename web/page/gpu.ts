@@ -1,11 +1,12 @@
 // Draws what the viewport shows with WebGPU: the Wgsl texts, and bind groups as the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
 import { backgroundLevel, kBoard, lastLod } from './behind';
-import { environmentOf, type Cube, type Environment } from './environment';
+import type { Cube, Environment } from './environment';
 import type { Drawable } from '../src/gltf';
 import { multiply } from '../src/math';
+import { neutral } from './shapes';
 import type { Pass } from '../src/types';
-import { dropOldest, frameBlocks, kBlocks, kLocations, kSolid, kSorted, neutral, slotKey, type Look, type Viewport } from './viewport';
+import { dropOldest, frameBlocks, kBlocks, kLocations, kSolid, kSorted, slotKey, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
 declare const GPUMapMode: Record<'READ', number>;
@@ -59,7 +60,11 @@ function half(x: number): number {
   if (magnitude < 0x38800000) return sign | Math.round(Math.abs(kFloat[0]) * 2 ** 24);
   return sign | ((magnitude - 0x38000000 + 0x1000) >>> 13);
 }
-export const halves = (numbers: Float32Array) => Uint16Array.from(numbers, half);
+export function halves(numbers: Float32Array): Uint16Array<ArrayBuffer> {
+  const made = new Uint16Array(numbers.length);
+  for (let i = 0; i < made.length; ++i) made[i] = half(numbers[i]);
+  return made;
+}
 
 export class GpuPainter {
   private readonly context: GPUCanvasContext;
@@ -69,7 +74,7 @@ export class GpuPainter {
   /** Of numbers that several drawables may have. */
   private arrays = new WeakMap<ArrayBufferView, GPUBuffer>();
   private materials = new WeakMap<Look, GPUBuffer>();
-  private cubes = new WeakMap<Cube, GPUTextureView>();
+  private cubes = new WeakMap<Cube, { texture: GPUTexture; view: GPUTextureView; version: number }>();
   private textures = new Map<string, GPUTextureView>();
   private samplers = new Map<string, GPUSampler>();
   private blocks = new Map<string, GPUBuffer>();
@@ -138,7 +143,7 @@ export class GpuPainter {
   /** On the canvas, or on a texture of the canvas's format. */
   paint(view: Viewport, { width, height }: { width: number; height: number }, onto?: GPUTexture): void {
     const target = this.targetOf(width, height);
-    const environment = environmentOf(view.environment);
+    const environment = view.around();
     const projection = multiply(kDepths, view.viewProjection(width / height));
     const blocks = frameBlocks(view.eye(), projection, environment, view.lights, view.seconds, {
       lod: lastLod(width, height), down: true, brightness: view.brightness,
@@ -407,16 +412,19 @@ export class GpuPainter {
   }
 
   private cubeOf(cube: Cube): GPUTextureView {
+    const { size, levels, version } = cube;
     let made = this.cubes.get(cube);
-    if (made) return made;
-    const { size, levels } = cube;
-    const texture = this.device.createTexture({
-      size: [size, size, 6], format: 'rgba16float', mipLevelCount: levels.length, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
-    });
+    if (made?.version === version) return made.view;
+    if (!made) {
+      const texture = this.device.createTexture({
+        size: [size, size, 6], format: 'rgba16float', mipLevelCount: levels.length, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+      });
+      this.cubes.set(cube, (made = { texture, view: texture.createView({ dimension: 'cube' }), version }));
+    }
+    const { texture } = made;
     levels.forEach((faces, level) => faces.forEach((texels, i) => this.write(texture, halves(texels), 8 * Math.max(1, size >> level), level, i)));
-    made = texture.createView({ dimension: 'cube' });
-    this.cubes.set(cube, made);
-    return made;
+    made.version = version;
+    return made.view;
   }
 
   /** By the numbers of a glTF sampler; without one, as maps and tables are read. */

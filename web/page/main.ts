@@ -1,19 +1,17 @@
 // The page of `lacquer view`: a material's properties, its picture, its shaders and its node graph, all from one file that
 // is edited in place.
 import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
+import { Around } from './around';
 import { connectCode, hexOf, selectTerm, showCode } from './code';
 import { fillOthers, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
 import { costTable, errorTable, type Costs, type Errors } from './costs';
 import { Document, type Input } from './document';
-import { byId, h, tell } from './dom';
-import { addEnvironment, kEnvironments } from './environment';
+import { byId, download, h, tell } from './dom';
 import { Files } from './files';
 import { fromBase64 } from '../src/gltf';
 import { GpuPainter } from './gpu';
-import { radianceOf, readHdr } from './hdr';
-import { fileLights, kStudioLights, type Light } from './lights';
 import { GraphPane } from './graph';
 import { kOwnNodes, NodeText } from './nodetext';
 import { Properties } from './properties';
@@ -21,8 +19,6 @@ import { kRates, ratesOf } from './rates';
 import { Viewport, type Look } from './viewport';
 
 const kTargets = ['essl', 'wgsl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp', 'js'];
-/** Texels of a side of the cube that an environment of one's own is filtered into. */
-const kOwnEnvironment = 128;
 
 /** Milliseconds of work on other materials between two frames. */
 const kSlice = 8;
@@ -45,12 +41,12 @@ export class Page {
   nodes: any;
   private readonly nodeText: NodeText;
   readonly files: Files;
+  readonly around: Around;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
   private messages: Message[] = [];
   private notice: Message[] = []; // of what was done last, and not of the material
-  private ownLights: Light[] = [];
   private otherId = '';
   private othersOf = ''; // the structure whose words `compare` offers
   private painter: GpuPainter | null = null;
@@ -77,8 +73,9 @@ export class Page {
     byId('version').textContent = lacquer.version;
     this.fillSelects();
     this.connectControls();
-    connectPointer(viewport);
     this.files = new Files(this);
+    this.around = new Around(this);
+    connectPointer(viewport, { turnAround: (angle, done) => this.around.turnBy(angle, done), pick: (x, y) => this.pick(x, y) });
     connectCode(this);
   }
 
@@ -132,11 +129,7 @@ export class Page {
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
     viewport.setScene(of.drawables);
     this.othersOf = '';
-    this.ownLights = fileLights(of.file);
-    const lamps = byId<HTMLSelectElement>('lamps');
-    lamps.options[1].disabled = this.ownLights.length === 0;
-    if (lamps.value === 'own' && this.ownLights.length === 0) lamps.value = 'studio';
-    this.light();
+    this.around.open();
     const materials = byId<HTMLSelectElement>('material');
     materials.replaceChildren(...of.names.map((name, i) => h('option', { value: i }, name || `(material ${i})`)));
     if (of.names.length > 0) this.choose(0);
@@ -160,7 +153,7 @@ export class Page {
     this.graph.clear();
     for (const id of ['code', 'skipped', 'measured', 'errors-of-terms']) byId(id).replaceChildren();
     for (const id of ['id', 'took', 'size', 'operations', 'sizes']) byId(id).textContent = '';
-    for (const id of ['undo', 'redo']) byId<HTMLButtonElement>(id).disabled = true;
+    this.showWays();
     clearTimeout(this.panelsPending);
     this.notice = [];
     this.messages = [messageOf('this file has no materials: it is seen with the default one', 'note')];
@@ -225,6 +218,27 @@ export class Page {
     this.viewport.shown = material;
     this.properties.show(this.of);
     this.compile();
+  }
+
+  /** Chooses the material that is seen there. */
+  private pick(x: number, y: number): void {
+    const material = this.viewport.materialAt(x, y);
+    if (material === undefined || !this.of || material === this.of.material) return;
+    if (material === kDefaultMaterial || material >= this.of.names.length) return this.note('what is seen there has no material: it is drawn with the default one');
+    this.choose(material);
+  }
+
+  /** The picture as it is seen, without the page. */
+  private async savePicture(): Promise<void> {
+    const { viewport } = this;
+    const { gpu } = viewport;
+    viewport.draw();
+    const { width, height } = gpu?.canvas ?? viewport.canvas;
+    const canvas = new OffscreenCanvas(width, height);
+    const pixels = gpu ? await gpu.pixels(viewport, width, height) : viewport.pixels();
+    canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(pixels), width, height), 0, 0);
+    const bytes = new Uint8Array(await (await canvas.convertToBlob({ type: 'image/png' })).arrayBuffer());
+    download(`${(this.of?.file.name ?? 'lacquer').replace(/\.[^.]*$/, '')}.png`, bytes, 'image/png');
   }
 
   // ---- compiling
@@ -558,15 +572,13 @@ export class Page {
     const option = ({ name, doc }: { name: string; doc: string }) => h('option', { value: name, title: doc }, name);
     byId('profile').replaceChildren(...profiles.map(option));
     byId<HTMLSelectElement>('profile').value = this.figures.options.profile ?? profiles[0].name;
-    byId('environment').replaceChildren(...Object.keys(kEnvironments).map((name) => h('option', {}, name)));
     byId('target').replaceChildren(...kTargets.map((name) => h('option', {}, name)));
   }
 
-  private light(): void {
-    const { viewport } = this;
-    const lamps = byId<HTMLSelectElement>('lamps').value;
-    viewport.lights = lamps === 'own' ? this.ownLights : lamps === 'none' ? [] : kStudioLights;
-    viewport.redraw();
+  /** It stands in another light. */
+  relight(): void {
+    this.compare();
+    this.viewport.redraw();
   }
 
   /** Exchanges WebGL 2 for WebGPU, or the other way; where there is no WebGPU it says so. */
@@ -614,7 +626,9 @@ export class Page {
     const step = (act: (of: Document) => void) => () => {
       if (!this.of) return;
       act(this.of);
-      this.choose(this.of.material);
+      this.around.show();
+      if (this.of.names.length > 0) this.choose(this.of.material);
+      else this.showWays();
     };
     this.on('undo', 'click', step((of) => of.undo()));
     this.on('redo', 'click', step((of) => of.redo()));
@@ -635,33 +649,17 @@ export class Page {
       this.viewport.other.split = Number(byId<HTMLInputElement>('split').value);
       this.viewport.redraw();
     });
-    this.on('lamps', 'change', () => {
-      this.light();
-      this.compare();
-    });
     this.on('painter', 'change', () => void this.paintWith(byId<HTMLSelectElement>('painter').value));
     for (const id of ['target', 'stage']) this.on(id, 'change', () => this.showText());
     this.on('forget-graph', 'click', () => this.forgetGraph());
-    this.on('environment', 'change', () => {
-      this.viewport.environment = byId<HTMLSelectElement>('environment').value;
-      this.compare();
-      this.viewport.redraw();
-    });
     this.on('shape', 'change', () => {
       this.viewport.useBall = byId<HTMLSelectElement>('shape').value === 'ball';
       this.viewport.fit();
     });
+    this.on('whole', 'click', () => this.viewport.fit());
+    this.on('save-picture', 'click', () => void this.savePicture().catch((error: unknown) => this.fail(error)));
     this.on('exposure', 'input', () => {
       this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);
-      this.viewport.redraw();
-    });
-    this.on('background', 'change', () => {
-      this.viewport.background = byId<HTMLSelectElement>('background').value as Viewport['background'];
-      this.viewport.redraw();
-    });
-    this.on('brightness', 'input', () => {
-      this.viewport.brightness = Number(byId<HTMLInputElement>('brightness').value);
-      this.compare();
       this.viewport.redraw();
     });
     this.connectClock();
@@ -686,19 +684,6 @@ export class Page {
     this.of.settle();
     this.properties.show(this.of);
     this.compile();
-  }
-
-  /** An environment of the user's own. */
-  surround(name: string, bytes: Uint8Array): void {
-    try {
-      addEnvironment(name, radianceOf(readHdr(bytes)), kOwnEnvironment);
-    } catch (error) {
-      return this.fail(error);
-    }
-    const choice = byId<HTMLSelectElement>('environment');
-    if (![...choice.options].some(({ value }) => value === name)) choice.append(h('option', {}, name));
-    choice.value = name;
-    choice.dispatchEvent(new Event('change'));
   }
 
   /** What a test asks. */

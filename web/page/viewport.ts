@@ -2,13 +2,14 @@
 import type { Interface, Shader } from '../src/index';
 import type { Pass } from '../src/types';
 import { Behind, backgroundLevel, kTriangleVertex, lastLod, type Background, type Copy } from './behind';
-import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
+import { constantEnvironment, environmentOf, Turned, type Cube, type Environment } from './environment';
 import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gltf';
 import type { GpuPainter } from './gpu';
 import { isCount, item, list } from '../src/json';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
-import { add, cross, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
-import { ball, flatDrawable } from './shapes';
+import { add, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
+import { firstMet } from './pick';
+import { ball, cornersUv, flatDrawable, neutral } from './shapes';
 import { kShowFragment } from './tone';
 
 /** A glTF texture's index, its colour space, and where the graph has it how it is looked up, as a glTF sampler: else as the file's
@@ -55,6 +56,8 @@ interface Side {
   to: number;
 }
 
+/** Radii from the middle to the eye, at first. */
+const kDistance = 3.4;
 /** Programs that are kept; of more, the oldest that nothing is drawn with goes. */
 export const kMostPrograms = 48;
 export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough', 'Clock'];
@@ -86,6 +89,8 @@ interface Target {
 interface Maps {
   specular: WebGLTexture;
   irradiance: WebGLTexture;
+  /** Of the environment's specular map. */
+  version: number;
   /** What is seen through what transmits. */
   behind?: WebGLTexture;
 }
@@ -102,31 +107,12 @@ export function dropOldest<T>(programs: Map<string, T>, used: Set<string>): T[] 
   return dropped;
 }
 
-/** Texture coordinates of a square from -1 to 1 across z with `uv` in its middle. They change just so much that a shader
- * without vertex tangents, which asks their derivatives, finds the frame of `n` and `t`. */
-function cornersUv({ n, t, uv }: { n: Vec3; t: number[]; uv: number[] }): number[] {
-  const flat = (x: Vec3) => [x[0] - (n[0] * x[2]) / n[2], x[1] - (n[1] * x[2]) / n[2]];
-  const along: Vec3 = [t[0], t[1], t[2]];
-  const [u, v] = [flat(along), flat(scale(cross(n, along), -t[3]))];
-  const step = 1e-3 / (u[0] * v[1] - u[1] * v[0]);
-  return [[-1, -1], [1, -1], [1, 1], [-1, 1]].flatMap(([x, y]) => [
-    uv[0] + step * (x * v[1] - y * v[0]), uv[1] + step * (y * u[0] - x * u[1]),
-  ]);
-}
-
 /** Texels that all images of a file may have together: 256 MB. */
 const kMostTexels = 2 ** 26;
 
 /** Pixels of a side that each of so many images may have, a power of two; larger ones are shown smaller. */
 export function mostPixels(images: number): number {
   return 2 ** Math.floor(Math.log2(Math.sqrt(kMostTexels / Math.max(images, 1))));
-}
-
-/** What stands for an absent image. */
-export function neutral(slot: string): [number, number, number, number] {
-  if (slot.endsWith('normal_texture')) return [128, 128, 255, 255];
-  if (slot.endsWith('anisotropy_texture')) return [255, 128, 255, 255];
-  return [255, 255, 255, 255];
 }
 
 /** What frameBlocks() is told beside the camera. `lod` is the last of scene_behind, whose rows run `down` the screen or up. */
@@ -180,10 +166,13 @@ export class Viewport {
   private second: Target | null = null;
   private pending = 0;
 
-  orbit = { yaw: 0.35, pitch: 0.2, distance: 3.4 };
+  orbit = { yaw: 0.35, pitch: 0.2, distance: kDistance };
   middle: Vec3 = [0, 0, 0];
   radius = 1;
   environment = 'Studio';
+  /** Of what is around, about +y. */
+  turn = 0;
+  private readonly turned = new Turned();
   exposure = 1;
   background: Background = 'plain';
   /** What is around is as bright. */
@@ -193,6 +182,8 @@ export class Viewport {
   playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
   /** Told before each picture whether something asks for the time. */
   onClock: (asked: boolean) => void = () => {};
+  /** Told after each picture. */
+  onDrawn: () => void = () => {};
   private ticked = 0;
   useBall = true;
   lights: Light[] = kStudioLights;
@@ -238,7 +229,23 @@ export class Viewport {
     const { middle, radius } = own ? bounds(this.meshes.map((m) => m.drawable)) : { middle: [0, 0, 0] as Vec3, radius: 1 };
     this.middle = middle;
     this.radius = radius;
+    this.orbit.distance = kDistance;
     this.redraw();
+  }
+  /** Moves what is looked at to the right and up, by halves of the picture's height. */
+  pan(right: number, up: number): void {
+    const view = lookAt(this.eye(), this.middle);
+    const by = this.orbit.distance * this.radius * Math.tan(0.36);
+    this.middle = this.middle.map((x, i) => x + by * (right * view[4 * i] + up * view[4 * i + 1])) as Vec3;
+    this.redraw();
+  }
+  /** The material of the file's own that is seen at a place of the picture, from -1 to 1. */
+  materialAt(x: number, y: number): number | undefined {
+    if (this.useBall) return undefined;
+    const canvas = this.gpu?.canvas ?? this.canvas;
+    const rays = this.rays(canvas.clientWidth / Math.max(canvas.clientHeight, 1));
+    const along = [0, 1, 2].map((i) => x * rays[i] + y * rays[3 + i] + rays[6 + i]) as Vec3;
+    return firstMet(this.meshes.map(({ drawable }) => drawable), this.eye(), along)?.material;
   }
 
   /** Loads the file's textures that a look has, then draws again. */
@@ -335,10 +342,14 @@ export class Viewport {
   draw(): void {
     this.pending = 0;
     this.tick();
-    if (this.gpu) return this.gpu.paint(this, this.sized(this.gpu.canvas));
+    if (this.gpu) this.gpu.paint(this, this.sized(this.gpu.canvas));
+    else this.drawHere();
+    this.onDrawn();
+  }
+  private drawHere(): void {
     const { width, height } = this.sized(this.canvas);
     const target = this.targetOf(width, height);
-    const environment = environmentOf(this.environment);
+    const environment = this.around();
     if (this.other?.difference) return this.drawDifference(target, environment, this.other.look);
     const cut = this.cut(width);
     const sides: Side[] = [{ instead: null, from: 0, to: cut }];
@@ -371,6 +382,10 @@ export class Viewport {
     this.present(target, -10, this.second);
   }
 
+  /** The environment, turned. */
+  around(): Environment {
+    return this.turned.of(environmentOf(this.environment), this.turn);
+  }
   /** The column from which on the other look is seen. */
   cut(width: number): number {
     return this.other ? Math.round(width * this.other.split) : width;
@@ -577,7 +592,7 @@ export class Viewport {
     const draw = (look: Look) => {
       const { gl } = this;
       const target = this.makeTarget(size, size);
-      this.drawAll(target, environmentOf(this.environment), [{ instead: look, from: 0, to: size }]);
+      this.drawAll(target, this.around(), [{ instead: look, from: 0, to: size }]);
       this.resolve(target);
       gl.bindFramebuffer(gl.FRAMEBUFFER, target.resolved);
       const pixels = new Float32Array(4 * size * size);
@@ -604,25 +619,36 @@ export class Viewport {
 
   private mapsOf(environment: Environment): Maps {
     let made = this.maps.get(environment);
+    const { specular, irradiance } = environment;
     if (!made) {
-      made = { specular: this.cubeTexture(environment.specular), irradiance: this.cubeTexture(environment.irradiance) };
+      made = { specular: this.cubeTexture(specular), irradiance: this.cubeTexture(irradiance), version: specular.version };
       this.maps.set(environment, made);
+    }
+    if (made.version !== specular.version) {
+      this.fillCube(made.specular, specular);
+      this.fillCube(made.irradiance, irradiance);
+      made.version = specular.version;
     }
     return made;
   }
-  private cubeTexture({ size, levels }: Cube): WebGLTexture {
+  private cubeTexture(cube: Cube): WebGLTexture {
     const { gl } = this;
     const texture = gl.createTexture()!;
     gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
-    gl.texStorage2D(gl.TEXTURE_CUBE_MAP, levels.length, gl.RGBA16F, size, size);
+    gl.texStorage2D(gl.TEXTURE_CUBE_MAP, cube.levels.length, gl.RGBA16F, cube.size, cube.size);
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    this.fillCube(texture, cube);
+    return texture;
+  }
+  private fillCube(texture: WebGLTexture, { size, levels }: Cube): void {
+    const { gl } = this;
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
     levels.forEach((faces, level) => {
       const width = Math.max(1, size >> level);
       faces.forEach((texels, i) =>
         gl.texSubImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + i, level, 0, 0, width, width, gl.RGBA, gl.FLOAT, texels),
       );
     });
-    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-    return texture;
   }
 
   private upload(drawable: Drawable, uploaded = new Map<ArrayBufferView, WebGLBuffer>()): Mesh {

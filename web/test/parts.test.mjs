@@ -16,7 +16,7 @@ const part = async (name, place = 'web/page') => {
   return import(pathToFileURL(outfile));
 };
 const { readHdr, radianceOf } = await part('hdr');
-const { makeEnvironment } = await part('environment');
+const { makeEnvironment, Turned } = await part('environment');
 const { element, fileLights } = await part('lights');
 const { halves } = await part('gpu');
 const { frameBlocks, kBlocks } = await part('viewport');
@@ -85,6 +85,23 @@ test('an environment of one colour has it at every roughness, and its irradiance
   assert.equal(specular.levels.length, 3);
   for (const faces of specular.levels) for (const face of faces) close([...face.slice(0, 3)], [0.5, 2, 1], 0.01);
   for (const face of irradiance.levels[0]) close([...face.slice(0, 3)], [0.5, 2, 1], 0.01);
+});
+
+test('a turned environment is what its radiance gives turned, in maps that are filled again', () => {
+  // From +z to +x, as yaw counts.
+  const smooth = (yaw) => ([x, y, z]) => [1 + x * Math.cos(yaw) - z * Math.sin(yaw), 1 + y, 2 + x * Math.sin(yaw) + z * Math.cos(yaw)];
+  const [turned, environment] = [new Turned(), makeEnvironment(smooth(0), 32)];
+  assert.equal(turned.of(environment, 0), environment);
+  const made = turned.of(environment, 2);
+  for (const angle of [0.7, -2.5]) {
+    const versions = [made.specular.version, made.irradiance.version];
+    assert.equal(turned.of(environment, angle), made);
+    assert.ok(made.specular.version > versions[0] && made.irradiance.version > versions[1]);
+    const right = makeEnvironment(smooth(angle), 32);
+    for (const map of ['specular', 'irradiance']) {
+      right[map].levels.forEach((faces, level) => level < 2 && faces.forEach((texels, i) => close([...made[map].levels[level][i]], [...texels], 0.1)));
+    }
+  }
 });
 
 test('directions are those of an equirectangular picture, and roughness blurs and loses no light', () => {

@@ -1,7 +1,7 @@
 // What the page shows of a file's scene, by what a person does with it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { begin, drop, end, kSmall, open, painted, settled } from './page.mjs';
+import { begin, downloaded, drop, end, kSmall, open, painted, settled } from './page.mjs';
 
 before(begin);
 after(end);
@@ -98,4 +98,91 @@ test('what is around is shown, blurred or not, behind a ball of glass, too', () 
     assert.deepEqual(await corner(), [0, 0, 0]);
     await page.selectOption('#background', 'plain');
     assert.deepEqual(await corner(), plain);
+  }, { size: kSmall }));
+
+const view = (page) => page.evaluate(() => {
+  const { orbit, middle, radius } = window.lacquerPage.viewport;
+  return { ...orbit, middle: [...middle], radius };
+});
+
+test('a click chooses the material that is seen there, a drag turns, with the right button or Ctrl it moves, and F shows all again', () =>
+  open([], async (page) => {
+    await show(page, [{ at: [-1.2, 0, 0], material: shining(1, 0, 0) }, { at: [1.2, 0, 0], material: shining(0, 1, 0) }, { at: [1.2, 0, -1], material: shining(0, 0, 1) }]);
+    await page.evaluate(() => Object.assign(window.lacquerPage.viewport.orbit, { yaw: 0, pitch: 0 }));
+    const { x, y, width, height } = await page.locator('#viewport').boundingBox();
+    const [left, right] = [{ x: x + width / 2 - height / 6, y: y + height / 2 }, { x: x + width / 2 + height / 6, y: y + height / 2 }];
+    await page.mouse.click(right.x, right.y);
+    assert.equal(await page.inputValue('#material'), '1');
+    await page.mouse.click(left.x, left.y);
+    assert.equal(await page.inputValue('#material'), '0');
+    await page.mouse.click(x + 3, y + 3);
+    assert.equal(await page.inputValue('#material'), '0');
+    const first = await view(page);
+    const drag = async (by, button = 'left') => {
+      await page.mouse.move(right.x, right.y);
+      await page.mouse.down({ button });
+      await page.mouse.move(right.x + by[0] / 2, right.y + by[1] / 2);
+      await page.mouse.move(right.x + by[0], right.y + by[1]);
+      await page.mouse.up({ button });
+    };
+    await drag([30, 0]);
+    assert.equal(await page.inputValue('#material'), '0'); // a drag is no click
+    const turned = await view(page);
+    assert.ok(Math.abs(turned.yaw + 0.2) < 1e-6 && turned.middle.join() === first.middle.join(), JSON.stringify(turned));
+    await page.evaluate(() => Object.assign(window.lacquerPage.viewport.orbit, { yaw: 0 }));
+    await drag([height / 4, height / 4], 'right');
+    const moved = await view(page);
+    // What is under the pointer stays under it.
+    const by = 0.5 * moved.distance * moved.radius * Math.tan(0.36);
+    assert.ok(Math.abs(moved.middle[0] + by) < 0.02 * by && Math.abs(moved.middle[1] - by) < 0.02 * by && moved.yaw === 0, JSON.stringify([moved, by]));
+    await page.keyboard.down('Control');
+    await drag([-20, 0]);
+    await page.keyboard.up('Control');
+    assert.ok((await view(page)).middle[0] > moved.middle[0]);
+    await page.mouse.wheel(0, 400);
+    await page.focus('#viewport');
+    await page.keyboard.press('Control+ArrowUp');
+    assert.ok((await view(page)).middle[1] > moved.middle[1]);
+    await page.keyboard.press('f');
+    assert.deepEqual(await view(page), first);
+  }, { size: kSmall }));
+
+test('two fingers come nearer and move the picture; one turns it', () =>
+  open(['examples/core.gltf'], async (page) => {
+    const { x, y, width, height } = await page.locator('#viewport').boundingBox();
+    const [cx, cy] = [x + width / 2, y + height / 2];
+    const session = await page.context().newCDPSession(page);
+    await session.send('Emulation.setTouchEmulationEnabled', { enabled: true, maxTouchPoints: 2 });
+    const send = (type, list) => session.send('Input.dispatchTouchEvent', { type, touchPoints: list.map(([x, y], id) => ({ x, y, id })) });
+    const first = await view(page);
+    await send('touchStart', [[cx - 10, cy], [cx + 10, cy]]);
+    for (const apart of [14, 17, 20]) await send('touchMove', [[cx - apart, cy], [cx + apart, cy]]);
+    const near = await view(page);
+    assert.ok(Math.abs(near.distance - first.distance / 2) < 0.1 && near.yaw === first.yaw, JSON.stringify(near));
+    await send('touchMove', [[cx, cy], [cx + 40, cy]]);
+    await send('touchEnd', []);
+    const moved = await view(page);
+    assert.ok(moved.middle[0] < -0.1 && Math.abs(moved.distance - near.distance) < 0.1, JSON.stringify(moved));
+    await send('touchStart', [[cx, cy]]);
+    await send('touchMove', [[cx + 30, cy]]);
+    await send('touchEnd', []);
+    assert.ok((await view(page)).yaw < moved.yaw);
+  }, { size: kSmall }));
+
+test('the picture is saved as PNG', () =>
+  open(['examples/core.gltf'], async (page) => {
+    const png = await downloaded(page, '#save-picture');
+    const { width, height, middle } = await page.evaluate(() => {
+      const { canvas } = window.lacquerPage.viewport;
+      const pixels = window.lacquerPage.viewport.pixels();
+      const at = 4 * (Math.floor(canvas.height / 2) * canvas.width + Math.floor(canvas.width / 2));
+      return { width: canvas.width, height: canvas.height, middle: [...pixels.subarray(at, at + 3)] };
+    });
+    const there = await page.evaluate(async (base64) => {
+      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      return { width: bitmap.width, height: bitmap.height, middle: [...context.getImageData(Math.floor(bitmap.width / 2), Math.floor(bitmap.height / 2), 1, 1).data].slice(0, 3) };
+    }, png.toString('base64'));
+    assert.deepEqual(there, { width, height, middle });
   }, { size: kSmall }));
