@@ -41,6 +41,8 @@ export interface Options {
   template?: string;
   targets?: Target[];
   parameters?: 'uniform' | 'baked' | 'spec';
+  /** 'bindless': lists of objects and materials and an array of textures, by numbers of the instance. */
+  binding?: 'sets' | 'bindless';
   lights?: 'any' | 'scene' | Record<string, number>;
   switches?: Record<string, boolean>;
   ibl?: boolean;

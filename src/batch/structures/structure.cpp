@@ -187,7 +187,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
                                             setting.options.relaxed,
                                             optimization(setting.options),
                                             cost::chooserOf(setting.options),
-                                            other});
+                                            other,
+                                            setting.options.binding == BindingModel::Bindless});
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ struct Read {
       if (const std::optional<uint32_t> block = ir::blockOf(module, id)) blocks.insert(*block);
       if (module.dag[id].op != ir::Op::Input) continue;
       const ir::Input& input = module.dag.inputOf(id);
-      if (input.kind == ir::InputKind::Texture) textures.insert(input.field);
+      const bool own = input.kind == ir::InputKind::Texture && module.textures[input.field].array.empty();
+      if (own) textures.insert(input.field);
       if (input.kind == ir::InputKind::Attribute) attributes.insert(input.field);
     }
   }
@@ -100,7 +101,8 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
     const auto lists = static_cast<uint32_t>(std::count_if(
         read.blocks.begin(), read.blocks.end(), [&](uint32_t i) { return module.blocks[i].list; }));
     uniforms = std::max(uniforms, static_cast<uint32_t>(read.blocks.size()) - lists);
-    textures = std::max(textures, static_cast<uint32_t>(read.textures.size()) + lists);
+    textures =
+        std::max(textures, static_cast<uint32_t>(read.textures.size()) + (module.bindless ? 0 : lists));
     for (const uint32_t index : read.attributes)
       locations = std::max(locations, module.attributes[index].location + 1);
   }

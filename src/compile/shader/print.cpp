@@ -109,7 +109,7 @@ private:
   Result<std::string> printed(const targets::Row& row, int stage) {
     const ir::Module& module = row.dialect != nullptr ? legalized() : shader_.module;
     return targets::stageText(module, schedule::schedule(module, kStages[stage]), row.id,
-                              {head(), options_.argument_buffers});
+                              {head(), options_.argument_buffers || module.bindless});
   }
 
   void text(const targets::Row& row, int stage) {
