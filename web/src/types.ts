@@ -276,6 +276,8 @@ export interface Field {
 /** A shader's entry in manifest.json (docs/manifest.md), as far as the types say it. */
 export interface Interface {
   template: string;
+  /** Made with `binding: 'bindless'`. */
+  bindless?: true;
   uniforms: { block: string; role: string; size: number; array?: number; stride?: number; fields: Field[] }[];
   parameters: { name: string; type: string; fields: string[] }[];
   textures: {
@@ -286,6 +288,9 @@ export interface Interface {
     channels: string;
     color_space?: 'srgb' | 'linear';
     content?: 'color' | 'normal' | 'data';
+    /** With `bindless`: the array that the material's is taken from, and the byte of its record with its number there. */
+    array?: string;
+    number?: number;
   }[];
   inputs?: { name: string; location: number; type: string }[];
   /** Of the target "hlsl": the root signature of Direct3D 12 (docs/bindings.md). */

@@ -294,6 +294,11 @@ Filling fillingOf(const graph::Graph& graph, const material::Material& material)
   return filling;
 }
 
+bool hasArrays(const Reflection& reflection) {
+  return std::any_of(reflection.textures.begin(), reflection.textures.end(),
+                     [](const ReflectedTexture& texture) { return !texture.array.empty(); });
+}
+
 bool withinLimits(const Structure& structure, const Filling& filling) {
   for (size_t i = 0; i < filling.numbers.size(); ++i) {
     for (uint32_t c = 0; c < structure.numbers[i].components; ++c) {

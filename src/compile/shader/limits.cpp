@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "targets/target.h"
@@ -82,6 +83,23 @@ struct Read {
 
 }  // namespace
 
+/// What of WebGPU is no part of it.
+static Diagnostics withoutArrays(const ir::Module& module, std::span<const Target> targets) {
+  const bool arrays = std::any_of(module.textures.begin(), module.textures.end(),
+                                  [](const ir::TextureSlot& slot) { return !slot.array.empty(); });
+  const bool asked = std::any_of(targets.begin(), targets.end(), [](Target target) {
+    return targets::row(target).checker == targets::Checker::Tint;
+  });
+  if (!arrays || !asked) return {};
+  return {{"binding-arrays",
+           Severity::Warning,
+           {},
+           "the WGSL takes textures from arrays, of which WebGPU in browsers has none",
+           "a device of wgpu must have TEXTURE_BINDING_ARRAY and "
+           "SAMPLED_TEXTURE_AND_STORAGE_BUFFER_ARRAY_NON_UNIFORM_INDEXING; elsewhere bind by sets",
+           {}}};
+}
+
 Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets) {
   Measure limits(targets);
   uint32_t outputs = 0;
@@ -122,7 +140,9 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
   const auto varyings = static_cast<uint32_t>(module.varyings.size());
   limits.check(fmt::format("the stages have {} values between them", varyings), varyings,
                &DeviceLimits::varyings, "several numbers can be interpolated as one vector");
-  return limits.take();
+  Diagnostics found = limits.take();
+  for (Diagnostic& one : withoutArrays(module, targets)) found.push_back(std::move(one));
+  return found;
 }
 
 }  // namespace lacquer
