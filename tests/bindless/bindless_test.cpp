@@ -19,6 +19,7 @@
 #include "lacquer.h"
 #include "lacquer/contract.h"
 #include "lacquer/vulkan.h"
+#include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
@@ -526,6 +527,27 @@ TEST(Bindless, recordsAreWhatIsPacked) {
     EXPECT_GE(texture.number, used) << texture.name;
     EXPECT_LT(texture.number, record->size) << texture.name;
   }
+}
+
+/// What is proved of the operations does not depend on where numbers come from.
+TEST(Bindless, provesAsMuch) {
+  std::vector<std::pair<size_t, size_t>> proved;
+  for (const BindingModel binding : {BindingModel::Sets, BindingModel::Bindless}) {
+    Options options;
+    options.binding = binding;
+    options.targets = {Target::Spirv};
+    options.validate = false;
+    Messages messages;
+    const std::string path = (sourceFolder() / "examples/car_paint.gltf").string();
+    const Contract contract = lacquer::contract(Scene::load(path, options, messages), {}, options, messages);
+    auto& [safe, unproved] = proved.emplace_back();
+    for (const ContractShader& one : contract.shaders) {
+      safe += one.shader.reflection().proved;
+      unproved += one.shader.reflection().unproved.size();
+    }
+  }
+  EXPECT_EQ(proved[0], proved[1]);
+  EXPECT_GT(proved[0].first, 0U);
 }
 
 struct Refusal {
