@@ -505,6 +505,11 @@ typedef struct lacquer_texture {
   int role;
   int srgb;
   lacquer_binding at;
+  /* Of a shader made with "binding": "bindless": the array that the material's is taken from, which stands at
+   * the place, else empty; and the byte of the material's record where its number in the array lies, an int.
+   */
+  const char* array;
+  uint32_t number;
 } lacquer_texture;
 /* A vertex attribute ("TEXCOORD_0"; without a vertex stage what the fragment stage is given), or a colour. */
 typedef struct lacquer_place {

@@ -11,7 +11,7 @@ void check(VkResult result, const char* call) {
     throw std::runtime_error(std::string(call) + " fails with " + std::to_string(result));
 }
 
-Device::Device() {
+Device::Device(void* more, const VkPhysicalDeviceFeatures& core) {
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.apiVersion = VK_API_VERSION_1_3;
   VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
@@ -37,8 +37,10 @@ Device::Device() {
   VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
   VkPhysicalDeviceVulkan13Features features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   features.dynamicRendering = VK_TRUE;
+  features.pNext = more;
   VkDeviceCreateInfo create{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};
   create.queueCreateInfoCount = 1;
+  create.pEnabledFeatures = &core;
   create.pQueueCreateInfos = &queue;
   check(vkCreateDevice(physical_, &create, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, family, 0, &queue_);

@@ -29,7 +29,8 @@ void check(VkResult result, const char* call);
 
 class Device {
 public:
-  Device();
+  /// `features`: what else it must have, as vkCreateDevice() takes it.
+  explicit Device(void* features = nullptr, const VkPhysicalDeviceFeatures& core = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

@@ -77,6 +77,13 @@ enum class SpirvRoute : uint8_t {
   Glslang,  ///< through glslang from the GLSL; slower, a cross-check
 };
 
+/// How shaders find what is bound for an object and for a material.
+enum class BindingModel : uint8_t {
+  Sets,      ///< blocks and textures of their own, bound for each (docs/bindings.md)
+  Bindless,  ///< lists of objects and of materials and one array of textures, by numbers that the instance
+             ///< brings: one pipeline and one draw for all materials of a structure
+};
+
 /// What operations are taken to compute where something is proved of them (docs/intervals.md).
 enum class Precision : uint8_t {
   Vulkan,   ///< float32 as the Vulkan specification asks for it: what a GPU's compiler may make of the shader
@@ -121,6 +128,8 @@ struct Options {
   /// Each at most once; none makes a manifest without code.
   std::vector<Target> targets{std::begin(kShaderTargets), std::end(kShaderTargets)};
   Parameters parameters = Parameters::Uniform;
+  /// Bindless: not of Target::GlslGl and Target::Essl, nor beside `fallback`.
+  BindingModel binding = BindingModel::Sets;
   Lights lights;
   /// Of the library's switches, those that are to be other than it says, by name; the three below are
   /// switches, too.

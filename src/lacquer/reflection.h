@@ -78,6 +78,10 @@ struct ReflectedTexture : BoundResource {
   std::string type;     ///< "sampler2D", "samplerCube", "sampler2DShadow", "sampler2DArray", "sampler3D"
   std::string sampler;  ///< its sampler's name in HLSL and WGSL
   TextureRole role = TextureRole::Material;
+  /// Of a shader made by BindingModel::Bindless: the array that the material's is taken from, which stands at
+  /// the place, and the byte of the material's record where its number in the array lies, an int.
+  std::string array;
+  uint32_t number = 0;
   bool srgb = false;  ///< of the material: its texels are to be decoded, by the image's format
 };
 
@@ -145,6 +149,7 @@ struct RootParameter {
 
 struct Reflection {
   std::string template_name;
+  bool bindless = false;             ///< made by BindingModel::Bindless
   std::vector<UniformBlock> blocks;  ///< those that the shader reads
   std::vector<ReflectedParameter> parameters;
   bool has_spec_constants = false;

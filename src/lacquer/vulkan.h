@@ -42,13 +42,15 @@ inline VkDescriptorType descriptorType(const UniformBlock& block, const DynamicO
 struct SetLayouts {
   std::vector<VkDescriptorSetLayoutBinding> sets[kSets];
   std::vector<std::string> names[kSets];  ///< of the blocks and textures, binding by binding
+  uint32_t textures = 1024;  ///< of shaders made by BindingModel::Bindless: how many an array of them has
 
   /// Adds what a shader binds, in the sets from `first` to `last`. False where a block or texture of another
   /// name has the place: then that keeps it.
   bool add(const Reflection& reflection, const DynamicOffsets& dynamic = {}, uint32_t first = kFrameSet,
            uint32_t last = kObjectSet) {
     bool fits = true;
-    const auto put = [&](const BoundResource& what, VkDescriptorType type) {
+    const auto put = [&](const BoundResource& what, VkDescriptorType type, const std::string& array = {}) {
+      const std::string& called = array.empty() ? what.name : array;
       const BindingPoint& at = what.at;
       if (at.set < first || at.set > last || at.set >= kSets) return;
       std::vector<VkDescriptorSetLayoutBinding>& set = sets[at.set];
@@ -59,21 +61,29 @@ struct SetLayouts {
       std::vector<std::string>& named = names[at.set];
       const auto name = named.begin() + (place - set.begin());
       if (place != set.end() && place->binding == at.binding) {
-        fits &= place->descriptorType == type && *name == what.name;
+        fits &= place->descriptorType == type && *name == called;
         return;
       }
-      named.insert(name, what.name);
-      set.insert(place, {at.binding, type, 1, kBoth, nullptr});
+      named.insert(name, called);
+      std::vector<VkDescriptorBindingFlags>& flags = flags_[at.set];
+      flags.insert(flags.begin() + (place - set.begin()),
+                   array.empty() ? 0U : VkDescriptorBindingFlags{VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT});
+      set.insert(place, {at.binding, type, array.empty() ? 1 : textures, kBoth, nullptr});
     };
     for (const UniformBlock& block : reflection.blocks) put(block, descriptorType(block, dynamic));
     for (const ReflectedTexture& texture : reflection.textures)
-      put(texture, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+      put(texture, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture.array);
     return fits;
   }
   /// What vkCreateDescriptorSetLayout() is given; it points here.
   VkDescriptorSetLayoutCreateInfo info(uint32_t set) const {
-    return {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr, 0,
-            static_cast<uint32_t>(sets[set].size()), sets[set].data()};
+    const auto count = static_cast<uint32_t>(sets[set].size());
+    flag_infos_[set] = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO, nullptr, count,
+                        flags_[set].data()};
+    const bool arrays = std::any_of(flags_[set].begin(), flags_[set].end(),
+                                    [](VkDescriptorBindingFlags flags) { return flags != 0; });
+    return {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, arrays ? &flag_infos_[set] : nullptr, 0,
+            count, sets[set].data()};
   }
   /// What a pool holds for `count` of such a set.
   std::vector<VkDescriptorPoolSize> poolSizes(uint32_t set, uint32_t count) const {
@@ -83,13 +93,39 @@ struct SetLayouts {
         return size.type == binding.descriptorType;
       });
       if (same == sizes.end())
-        sizes.push_back({binding.descriptorType, count});
+        sizes.push_back({binding.descriptorType, count * binding.descriptorCount});
       else
-        same->descriptorCount += count;
+        same->descriptorCount += count * binding.descriptorCount;
     }
     return sizes;
   }
+
+private:
+  std::vector<VkDescriptorBindingFlags> flags_[kSets];
+  mutable VkDescriptorSetLayoutBindingFlagsCreateInfo flag_infos_[kSets]{};
 };
+
+/// What a device must have for shaders made by BindingModel::Bindless; for draws of many by one command
+/// VkPhysicalDeviceFeatures::multiDrawIndirect and drawIndirectFirstInstance besides.
+inline VkPhysicalDeviceDescriptorIndexingFeatures bindlessFeatures(void* next = nullptr) {
+  VkPhysicalDeviceDescriptorIndexingFeatures features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES;
+  features.pNext = next;
+  features.runtimeDescriptorArray = VK_TRUE;
+  features.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
+  features.descriptorBindingPartiallyBound = VK_TRUE;
+  return features;
+}
+
+/// What the input "DRAW" of such a shader is for an instance: its elements of the lists.
+struct DrawNumbers {
+  int32_t object = 0, material = 0;
+};
+/// A material's record: what Shader::pack() gives, ContractUse::block, with the number of one of its
+/// textures.
+inline void setNumber(unsigned char* record, const ReflectedTexture& texture, int32_t number) {
+  std::memcpy(record + texture.number, &number, sizeof number);
+}
 
 /// Gathers what vkUpdateDescriptorSets() is given.
 class SetWrites {
@@ -105,10 +141,13 @@ public:
     VkWriteDescriptorSet& write = add(set, binding, type);
     write.pBufferInfo = &buffers_.back();
   }
+  /// `element`: of an array.
   void image(VkDescriptorSet set, uint32_t binding, VkImageView view, VkSampler sampler,
-             VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL) {
+             VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, uint32_t element = 0) {
     images_.push_back({sampler, view, layout});
-    add(set, binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER).pImageInfo = &images_.back();
+    VkWriteDescriptorSet& write = add(set, binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+    write.dstArrayElement = element;
+    write.pImageInfo = &images_.back();
   }
   uint32_t size() const { return static_cast<uint32_t>(writes_.size()); }
   const VkWriteDescriptorSet* data() const { return writes_.data(); }
@@ -443,7 +482,7 @@ inline VertexStream vertexStream(const StoredAttribute& stored, const ShaderInpu
 
 /// Once for each instance, not for each vertex.
 inline bool isOfInstance(std::string_view attribute) {
-  return attribute == "TRANSLATION" || attribute == "ROTATION" || attribute == "SCALE";
+  return attribute == "TRANSLATION" || attribute == "ROTATION" || attribute == "SCALE" || attribute == "DRAW";
 }
 /// What an attribute that a primitive has not is for all of its vertices.
 inline std::array<float, 4> standIn(std::string_view attribute) {

@@ -91,6 +91,7 @@ json texturesOf(const lacquer_shader* shader) {
         {"set", texture.at.set},      {"binding", texture.at.binding},
         {"flat", texture.at.flat},    {"stages", stagesOf(texture.at.vertex != 0, texture.at.fragment != 0)}};
     if (texture.role == LACQUER_TEXTURE_MATERIAL) row["color_space"] = texture.srgb != 0 ? "srgb" : "linear";
+    if (*texture.array != 0) row["array"] = texture.array, row["number"] = texture.number;
     rows.push_back(std::move(row));
   }
   EXPECT_EQ(rows.size(), lacquer_shader_texture_count(shader));
@@ -167,6 +168,37 @@ TEST(Reflection, IsTheEntryOfTheManifest) {
     for (size_t t = 0; lacquer_shader_texture(c.get(), t, &texture, sizeof texture) != 0; ++t)
       expectApis(texture.at, entry, texture.name, true);
   }
+}
+
+/// Without bindings for each, the material is a list and its textures have numbers in it.
+TEST(Reflection, SaysWhereTheNumbersOfTexturesLie) {
+  const CMessages said;
+  const json wanted = {{"targets", {"wgsl", "msl"}}, {"binding", "bindless"}, {"validate", false}};
+  const COptions options = optionsFrom(wanted.dump(), said);
+  const std::string path = (sourceFolder() / "examples/car_paint.gltf").string();
+  const CScene scene(lacquer_scene_load(path.c_str(), options.get(), said));
+  const CGraph graph(lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, options.get(), said));
+  const CShader shader(lacquer_graph_generate(graph.get(), options.get(), said));
+  ASSERT_NE(shader, nullptr);
+  const json entry = json::parse(lacquer_shader_interface(shader.get(), nullptr));
+  EXPECT_EQ(entry["bindless"], true);
+  EXPECT_EQ(entry["metal"]["argument_buffers"], true);
+  EXPECT_EQ(blocksOf(shader.get()), blocksOf(entry));
+  EXPECT_EQ(texturesOf(shader.get()), entry["textures"]);
+  size_t numbered = 0;
+  const json materials = rowOf(entry["webgpu"]["bindings"], "Materials");
+  EXPECT_EQ(materials["buffer"]["type"], "read-only-storage");
+  for (const json& texture : entry["textures"]) {
+    if (texture["role"] != "material") continue;
+    ++numbered;
+    EXPECT_EQ(texture["array"], "textures");
+    EXPECT_EQ(texture["sampler"], "textures_sampler");
+    for (const json& block : entry["uniforms"]) {
+      if (block["role"] != "material") continue;
+      EXPECT_EQ(rowOf(block["fields"], texture["name"])["offset"], texture["number"]);
+    }
+  }
+  EXPECT_GT(numbered, 0U);
 }
 
 /// The lights of clusters are a storage buffer of any length, whichever role they have.

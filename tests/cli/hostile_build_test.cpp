@@ -262,6 +262,7 @@ std::map<std::string, std::string> shadersIn(const Workplace& place, const std::
 /// The words that make an option other than it is without; the option is where it lies in `options`.
 std::map<const void*, Words> wordsOf(const Options& options) {
   return {{&options.parameters, {"--params", "spec"}},
+          {&options.binding, {"--binding", "bindless"}},
           {&options.validate, {"--no-validate"}},
           {&options.spirv_route, {"--spirv-from", "glslang"}},
           {&options.relaxed, {"--relaxed", "0.0123"}},

@@ -38,6 +38,7 @@ Options optionsOf(std::string_view bytes) {
   if (below(4) == 0) options.profile = "openpbr";
   constexpr const char* kAs[] = {"", "", "gltf", "materialx"};
   options.as = kAs[below(4)];
+  if (below(4) == 0) options.binding = BindingModel::Bindless;
   return options;
 }
 

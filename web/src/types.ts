@@ -41,6 +41,8 @@ export interface Options {
   template?: string;
   targets?: Target[];
   parameters?: 'uniform' | 'baked' | 'spec';
+  /** 'bindless': lists of objects and materials and an array of textures, by numbers of the instance. */
+  binding?: 'sets' | 'bindless';
   lights?: 'any' | 'scene' | Record<string, number>;
   switches?: Record<string, boolean>;
   ibl?: boolean;
@@ -274,6 +276,8 @@ export interface Field {
 /** A shader's entry in manifest.json (docs/manifest.md), as far as the types say it. */
 export interface Interface {
   template: string;
+  /** Made with `binding: 'bindless'`. */
+  bindless?: true;
   uniforms: { block: string; role: string; size: number; array?: number; stride?: number; fields: Field[] }[];
   parameters: { name: string; type: string; fields: string[] }[];
   textures: {
@@ -284,6 +288,9 @@ export interface Interface {
     channels: string;
     color_space?: 'srgb' | 'linear';
     content?: 'color' | 'normal' | 'data';
+    /** With `bindless`: the array that the material's is taken from, and the byte of its record with its number there. */
+    array?: string;
+    number?: number;
   }[];
   inputs?: { name: string; location: number; type: string }[];
   /** Of the target "hlsl": the root signature of Direct3D 12 (docs/bindings.md). */

@@ -44,7 +44,7 @@ export function vertexStream(
 }
 
 /** Once for each instance, not for each vertex. */
-export const isOfInstance = (attribute: string): boolean => ['TRANSLATION', 'ROTATION', 'SCALE'].includes(attribute);
+export const isOfInstance = (attribute: string): boolean => ['TRANSLATION', 'ROTATION', 'SCALE', 'DRAW'].includes(attribute);
 
 /** What an attribute that a primitive has not is for all of its vertices. */
 export function standIn(attribute: string): [number, number, number, number] {
@@ -63,7 +63,9 @@ export function vertexBuffers(
 ): GPUVertexBufferLayout[] {
   return (shader.inputs ?? []).map(({ name, location }) => {
     const stored = primitive.attributes[name];
-    const from = streams[name] ?? (stored && vertexStream(name, stored)) ?? { format: 'float32x4', arrayStride: 0 };
+    // The instance's numbers in the lists of objects and of materials (binding: 'bindless').
+    const numbers = name === 'DRAW' ? { format: 'sint32x2', arrayStride: 8 } : undefined;
+    const from = streams[name] ?? numbers ?? (stored && vertexStream(name, stored)) ?? { format: 'float32x4', arrayStride: 0 };
     return {
       arrayStride: from.arrayStride,
       stepMode: isOfInstance(name) && from.arrayStride > 0 ? 'instance' : 'vertex',
@@ -246,6 +248,11 @@ export function pipelineStates(
   { mirrored = false, format = 'rgba16float', depthFormat = 'depth24plus' }:
     { mirrored?: boolean; format?: GPUTextureFormat; depthFormat?: GPUTextureFormat } = {},
 ) {
+  const array = shader.textures?.find((texture) => texture.array)?.array;
+  if (array !== undefined) {
+    throw new Error(`the shader takes textures from the array '${array}', and WebGPU has no arrays of textures: make it with ` +
+      "binding: 'sets'");
+  }
   const component = ([srcFactor, dstFactor]: [string, string]): GPUBlendComponent => ({
     operation: 'add', srcFactor: srcFactor as GPUBlendFactor, dstFactor: dstFactor as GPUBlendFactor,
   });

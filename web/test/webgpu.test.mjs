@@ -38,6 +38,14 @@ test('vertex buffers are the inputs in their order, with stand-ins that do not m
   assert.deepEqual(webgpu.standIn('ROTATION'), [0, 0, 0, 1]);
 });
 
+test('the numbers of an instance come once for each, and arrays of textures are refused', () => {
+  const shader = { inputs: [{ name: 'DRAW', type: 'ivec2', location: 15 }], outputs: [{}], textures: [{ name: 'map', array: 'textures' }] };
+  assert.deepEqual(webgpu.vertexBuffers(shader, { attributes: {} }), [
+    { arrayStride: 8, stepMode: 'instance', attributes: [{ shaderLocation: 15, offset: 0, format: 'sint32x2' }] },
+  ]);
+  assert.throws(() => webgpu.pipelineStates(shader, { double_sided: false, depth_write: true }), /arrays of textures/);
+});
+
 test('samplers are what the file says, and linear where it says nothing', () => {
   assert.deepEqual(webgpu.samplerOf({ wrap_s: 'clamp', wrap_t: 'mirror' }), {
     addressModeU: 'clamp-to-edge', addressModeV: 'mirror-repeat', magFilter: 'linear', minFilter: 'linear',

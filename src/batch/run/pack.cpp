@@ -62,8 +62,8 @@ Result<void> Packing::readCode(const ManifestCode& code, PackedShader& shader) {
 
 Result<void> Packing::read(const Manifest& manifest) {
   for (const ManifestShader& from : manifest.shaders) {
-    PackedShader& shader =
-        shaders_.emplace_back(PackedShader{from.id, &from.reflection, from.argument_buffers, {}});
+    PackedShader& shader = shaders_.emplace_back(
+        PackedShader{from.id, &from.reflection, from.argument_buffers || from.reflection.bindless, {}});
     for (const ManifestCode& code : from.targets) {
       if (!isWanted(code.target)) continue;
       if (Result<void> read = readCode(code, shader); !read) return read;

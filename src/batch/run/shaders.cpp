@@ -64,13 +64,14 @@ std::string Maker::entry(const std::string& id, const Structure& structure,
 MadeShader Maker::make(const std::string& id, Distinct& shader) const {
   MadeShader made;
   made.id = id;
+  const bool arrays = hasArrays(shader.structure->reflection);
   if (const ShaderReport* left = receipt_ == nullptr ? nullptr : receipt_->untouched(id)) {
     made.cached = true;
     made.validated = left->validated;
     made.files = left->files;
     std::map<Target, TargetCode> codes;
     for (const Target target : setting_.options.targets)
-      codes[target].validated = left->validated && hasValidator(target);
+      codes[target].validated = left->validated && hasValidator(target, arrays);
     made.text = entry(id, *shader.structure, codes);
     shader.module.reset();
     return made;
@@ -85,7 +86,8 @@ MadeShader Maker::make(const std::string& id, Distinct& shader) const {
   made.validated = setting_.options.validate;
   if (!code.complete()) return made;
   // Of what nothing here compiles the manifest says so.
-  for (const auto& [target, one] : code.targets) made.validated &= one.validated || !hasValidator(target);
+  for (const auto& [target, one] : code.targets)
+    made.validated &= one.validated || !hasValidator(target, arrays);
   write(id, *shader.structure, code.targets, made);
   made.text = entry(id, *shader.structure, code.targets);
   return made;

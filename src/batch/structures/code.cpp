@@ -76,7 +76,8 @@ void Coder::print(const std::string& id, Distinct& shader, const std::vector<Tar
     code.made = true;
     for (int stage = 0; stage < 2; ++stage) code.bytes[stage] = takeBytes(data, target, stage);
     Diagnostics& found = wrong[static_cast<size_t>(target)];
-    code.validated = options.validate && hasValidator(target) && found.empty();
+    code.validated =
+        options.validate && hasValidator(target, hasArrays(shader.structure->reflection)) && found.empty();
     // What is not valid is our bug, and is said again in every run.
     if (found.empty()) save(keyOf(id, target), code);
     std::move(found.begin(), found.end(), std::back_inserter(made.wrong));

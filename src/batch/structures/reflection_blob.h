@@ -44,7 +44,8 @@ void fields(Archive& archive, UniformBlock& of) {
 }
 template <class Archive>
 void fields(Archive& archive, ReflectedTexture& of) {
-  archive(static_cast<BoundResource&>(of), of.slot, of.type, of.sampler, of.role, of.srgb);
+  archive(static_cast<BoundResource&>(of), of.slot, of.type, of.sampler, of.role, of.srgb, of.array,
+          of.number);
 }
 template <class Archive>
 void fields(Archive& archive, ShaderInput& of) {
@@ -73,9 +74,9 @@ void fields(Archive& archive, OperationProof& of) {
 }
 template <class Archive>
 void fields(Archive& archive, Reflection& of) {
-  archive(of.template_name, of.blocks, of.parameters, of.has_spec_constants, of.spec_constants, of.textures,
-          of.inputs, of.outputs, of.depth, of.displaces, of.proved, of.unproved, of.webgpu_limits,
-          of.root_signature, of.root_parameters);
+  archive(of.bindless, of.template_name, of.blocks, of.parameters, of.has_spec_constants, of.spec_constants,
+          of.textures, of.inputs, of.outputs, of.depth, of.displaces, of.proved, of.unproved,
+          of.webgpu_limits, of.root_signature, of.root_parameters);
   RelaxedFigures figures = of.relaxed.value_or(RelaxedFigures());
   bool relaxed = of.relaxed.has_value();
   archive(relaxed, figures.bound, figures.operations, figures.of_operations, figures.cycles,

@@ -187,7 +187,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
                                             setting.options.relaxed,
                                             optimization(setting.options),
                                             cost::chooserOf(setting.options),
-                                            other});
+                                            other,
+                                            setting.options.binding == BindingModel::Bindless});
 }
 
 }  // namespace
@@ -291,6 +292,11 @@ Filling fillingOf(const graph::Graph& graph, const material::Material& material)
                                 t.file.empty() && !t.color && !t.own_sampler ? nullptr : &t});
   }
   return filling;
+}
+
+bool hasArrays(const Reflection& reflection) {
+  return std::any_of(reflection.textures.begin(), reflection.textures.end(),
+                     [](const ReflectedTexture& texture) { return !texture.array.empty(); });
 }
 
 bool withinLimits(const Structure& structure, const Filling& filling) {

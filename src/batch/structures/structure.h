@@ -160,6 +160,9 @@ Filling fillingOf(const graph::Graph& graph, const material::Material& material)
 /// several structures share, what this one has not itself; null for its own graph.
 ContractUse useOf(const Structure& structure, const Filling& filling, const programs::Fill* fill);
 
+/// True when textures of it are taken from arrays.
+bool hasArrays(const Reflection& reflection);
+
 /// True when the values of the graph's parameters are such that the structure's check holds for it.
 bool withinLimits(const Structure& structure, const Filling& filling);
 

@@ -103,9 +103,13 @@ void Intervals::evaluate(ValueId id) {
   if (value.op == Op::Input) {
     const ir::Input& in = dag_.inputOf(id);
     rangesOf(id).fill(input(in));
-    materialField(id, in);
+    if (in.kind == ir::InputKind::BlockField) materialField(id, in.block, in.field);
     varying(id, in);
     return;
+  }
+  if (value.op == Op::Element) {
+    rangesOf(id).fill(element(value));
+    return materialField(id, ir::ListField::of(value).block, ir::ListField::of(value).field);
   }
   if (value.op == Op::MatMul) return matMul(id);
   if (value.op == Op::Column) return static_cast<void>(rangesOf(id).fill(at(value.args[0], 0)));
@@ -173,11 +177,10 @@ Range Intervals::input(const ir::Input& input) const {
   return math_.whole(true);
 }
 
-void Intervals::materialField(ValueId id, const ir::Input& input) {
-  if (input.kind != ir::InputKind::BlockField || input.block >= module_.blocks.size()) return;
-  if (module_.blocks[input.block].role != ir::BlockRole::Material) return;
+void Intervals::materialField(ValueId id, uint32_t block, uint32_t number) {
+  if (block >= module_.blocks.size() || module_.blocks[block].role != ir::BlockRole::Material) return;
   for (const ir::PreshaderField& field : module_.preshader) {
-    if (field.field != input.field || !known(field.value)) continue;
+    if (field.field != number || !known(field.value)) continue;
     rangesOf(id) = rangesOf(field.value);
     facets_[id].alike = facets_[field.value].alike;
   }

@@ -87,7 +87,7 @@ private:
   void evaluate(ir::ValueId id);
   Range input(const ir::Input& input) const;
   Range open(ir::Interval range) const;
-  void materialField(ir::ValueId id, const ir::Input& input);
+  void materialField(ir::ValueId id, uint32_t block, uint32_t number);
   void varying(ir::ValueId id, const ir::Input& input);
   void vectorOp(ir::ValueId id);
   void matMul(ir::ValueId id);

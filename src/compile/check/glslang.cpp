@@ -172,8 +172,11 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, const targets::Row
   return diagnostic;
 }
 
-/// What DXC says of the model that is compiled for; a text may say otherwise.
-constexpr const char* kShaderModel = "#define __SHADER_TARGET_MAJOR 6\n#define __SHADER_TARGET_MINOR 0\n";
+/// What DXC says of the model that is compiled for; a text may say otherwise. And a function that glslang
+/// does not know: of a number that differs among the fragments.
+constexpr const char* kShaderModel =
+    "#define __SHADER_TARGET_MAJOR 6\n#define __SHADER_TARGET_MINOR 0\n"
+    "#define NonUniformResourceIndex(number) (number)\n";
 
 /// The one place that knows glslang's HLSL front end, which is deprecated there: whatever replaces it goes
 /// here. SPIR-V made from HLSL is legalized by glslang itself, because opaque values pass through functions.

@@ -80,7 +80,7 @@ UniformBlock blockOf(const ir::Module& module, const ir::Block& block) {
   for (const ir::BlockField& field : block.fields) {
     BlockField row{field.name, std::string(ir::typeName(field.type)), field.offset, field.array, 0, {}, {}};
     if (field.array != 0) row.stride = field.stride();
-    if (!computed) row.meaning = field.prose;
+    row.meaning = field.prose;
     made.fields.push_back(std::move(row));
   }
   for (size_t p = 0; computed && p < module.preshader.size(); ++p)
@@ -88,7 +88,7 @@ UniformBlock blockOf(const ir::Module& module, const ir::Block& block) {
   return made;
 }
 
-ReflectedTexture textureOf(const ir::TextureSlot& slot) {
+ReflectedTexture textureOf(const ir::Module& module, const ir::TextureSlot& slot) {
   ReflectedTexture made;
   static_cast<BoundResource&>(made) = boundOf(slot.name, slot.binding, false);
   made.type = ir::typeName(slot.type);
@@ -98,6 +98,14 @@ ReflectedTexture textureOf(const ir::TextureSlot& slot) {
               : slot.environment ? TextureRole::Environment
                                  : TextureRole::Material;
   made.srgb = slot.srgb;
+  if (slot.array.empty()) return made;
+  made.array = slot.array;
+  made.sampler = slot.array + "_sampler";
+  const targets::MslBinding msl = targets::mslArray(slot.binding);
+  made.msl = made.msl_argument = {msl.buffer, msl.index, msl.sampler};
+  for (const ir::Block& block : module.blocks) {
+    if (block.role == ir::BlockRole::Material) made.number = block.fields[slot.number].offset;
+  }
   return made;
 }
 
@@ -215,6 +223,7 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
   const std::array<Used, 2> used = {usedBy(module, kBothStages[0]), usedBy(module, kBothStages[1])};
   Reflection made;
   made.template_name = module.template_name;
+  made.bindless = module.bindless;
   for (size_t i = 0; i < module.blocks.size(); ++i) {
     if (!used[0].blocks[i] && !used[1].blocks[i]) continue;
     UniformBlock& block = made.blocks.emplace_back(blockOf(module, module.blocks[i]));
@@ -225,7 +234,7 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
   made.has_spec_constants = module.spec_constants;
   if (module.spec_constants) made.spec_constants = specConstantsOf(module);
   for (size_t i = 0; i < module.textures.size(); ++i) {
-    ReflectedTexture& texture = made.textures.emplace_back(textureOf(module.textures[i]));
+    ReflectedTexture& texture = made.textures.emplace_back(textureOf(module, module.textures[i]));
     texture.vertex = used[0].textures[i];
     texture.fragment = used[1].textures[i];
     if (texture.role == TextureRole::Material) texture.slot = used[texture.vertex ? 0 : 1].slots[i];

@@ -571,6 +571,8 @@ void members(A& a, Of<A, ReflectedTexture>& of) {
   place(a, of);
   a("role", of.role);
   if (of.role == TextureRole::Material) colorSpace(a, of.srgb);
+  a.some("array", of.array);
+  if (!of.array.empty()) a("number", of.number);
 }
 
 template <class A>
@@ -662,6 +664,7 @@ void members(A& a, const RootSignatureOf<A>& of) {
 template <class A>
 void members(A& a, Of<A, Reflection>& of) {
   a("template", of.template_name);
+  a.some("bindless", of.bindless);
   a("uniforms", of.blocks);
   a("parameters", of.parameters);
   if constexpr (A::kReads) of.has_spec_constants = a.has("spec_constants");

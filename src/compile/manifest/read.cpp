@@ -185,6 +185,10 @@ public:
       number(row, "binding", at, sampled != nullptr ? bound->wgsl.sampler : bound->wgsl.binding);
       stages(row, at, *bound);
     });
+    // The textures of an array have one sampler's name.
+    for (ReflectedTexture& texture : of_.textures) {
+      if (!texture.array.empty()) texture.wgsl = bySampler(texture.sampler)->wgsl;
+    }
     const Json* limits = json::member(json, "limits");
     if (limits == nullptr || !limits->is_object())
       return report_.error("missing-property", path, "the bindings of WebGPU have no \"limits\"");

@@ -204,7 +204,7 @@ void writeReflectionMembers(const Reflection& of, std::span<const Target> target
   }
   if (isShown("metal", targets)) {
     to.key("metal");
-    writeMetal(of, argument_buffers, to);
+    writeMetal(of, argument_buffers || of.bindless, to);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "ir/module.h"
 #include "passes/passes.h"
@@ -69,11 +70,15 @@ Diagnostics checkPlaces(const ir::Module& module) {
   };
   const auto add = [&](const ir::Binding& at, std::string_view name, bool texture) {
     take(places, std::pair(at.set, at.binding), name, fmt::format("set {}, binding {}", at.set, at.binding));
+    if (module.bindless) return;  // not for targets that know no sets
     take(flat, std::pair(texture, at.flat), name,
          fmt::format("{} {}", texture ? "texture unit" : "buffer binding", at.flat));
   };
   for (const ir::Block& block : module.blocks) add(block.binding, block.instance, block.list);
-  for (const ir::TextureSlot& slot : module.textures) add(slot.binding, slot.name, true);
+  std::set<std::string_view> arrays;
+  for (const ir::TextureSlot& slot : module.textures) {
+    if (slot.array.empty() || arrays.insert(slot.array).second) add(slot.binding, slot.name, true);
+  }
   return wrong;
 }
 

@@ -65,6 +65,11 @@ void place(ir::Module& module, const OtherLayout& other = {});
 /// the others.
 void bind(ir::Module& module, const OtherLayout& other = {});
 
+/// Makes elements of lists of the objects and of the material, which a number of each instance picks, and of
+/// the material's textures elements of arrays, whose numbers lie behind the material's block. One pipeline
+/// then draws all materials of a structure. The module must be bound.
+void makeBindless(ir::Module& module);
+
 /// Marks the operations of fragments that may be done at half precision, as long as no colour changes by more
 /// than `error` (analysis/relax.h). 0 marks none.
 void relax(ir::Module& module, double error);

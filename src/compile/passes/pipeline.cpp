@@ -50,6 +50,12 @@ constexpr std::array kPasses{
     // Behind all that changes values.
     Pass{{"relax", "with `--relaxed`: marks what may be computed at half precision"},
          [](ir::Module& m, const PipelineOptions& o) { relax(m, o.relaxed); }},
+    Pass{{"bindless",
+          "with `--binding bindless`: makes elements of lists of objects and materials, and of arrays of "
+          "textures"},
+         [](ir::Module& m, const PipelineOptions& o) {
+           if (o.bindless) makeBindless(m);
+         }},
 };
 
 constexpr auto kInfos = [] {
@@ -79,6 +85,7 @@ void optimizeFragment(ir::Module& module, const PipelineOptions& options) {
                                    [](const Pass& pass) { return pass.info.name == "optimize"; });
     PipelineOptions silent = options;
     silent.after = nullptr;
+    silent.bindless = false;  // what is drawn with is compared as it is bound plainly
     std::vector<ir::Module> forms;
     for (const optimize::Candidate& candidate : found) {
       forms.push_back(candidate.module);

@@ -31,6 +31,7 @@ struct PipelineOptions {
   optimize::Settings optimize{};
   Choose choose{};  ///< of what `optimize` finds; the model where there is none
   OtherLayout other{};
+  bool bindless = false;  ///< Options::binding
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().

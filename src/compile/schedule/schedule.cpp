@@ -202,6 +202,9 @@ private:
 
   bool wantsVariable(ir::ValueId id) const {
     const ir::Value& value = dag_[id];
+    // Languages have no variables of textures, HLSL none of its blocks' matrices.
+    if (value.op == ir::Op::TextureAt || (value.op == ir::Op::Element && ir::isMatrix(value.type)))
+      return false;
     if (value.op == ir::Op::SumOverLights) return true;
     if (discards_ && needsDerivatives(id)) return true;
     if (trivial(id)) return false;
@@ -225,8 +228,9 @@ private:
       }
     }
     for (const ir::TextureSlot& slot : module_.textures) {
-      names_.take(slot.name);
-      names_.take(slot.name + "_sampler");
+      const std::string& name = slot.array.empty() ? slot.name : slot.array;
+      names_.take(name);
+      names_.take(name + "_sampler");
     }
     for (const uint32_t p : program_.parameters) names_.take(module_.parameters[p].constant_name);
     emitted_.assign(dag_.size(), false);

@@ -23,7 +23,7 @@ enum class Decides : uint8_t {
 /// the names must be all of Options.
 template <class Each>
 void eachOption(const Options& options, Each each) {
-  const auto& [profile, as, simplify, template_name, targets, parameters, lights, switches, ibl,
+  const auto& [profile, as, simplify, template_name, targets, parameters, binding, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, properties,
                spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories,
                node_texts, materialx_directories, materialx_texts, document_texts, jobs, cache, cache_size,
@@ -35,6 +35,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Graph, template_name);
   each(Decides::Run, targets);
   each(Decides::Module, parameters);
+  each(Decides::Module, binding);
   each(Decides::Graph, lights);
   each(Decides::Graph, switches);
   each(Decides::Graph, ibl);

@@ -172,6 +172,12 @@ Diagnostics checkReading(const Options& options) {
 Diagnostics checkOptions(const Options& options) {
   Diagnostics wrong = checkReading(options);
   checkEnumerator("Options::spirv_route", options.spirv_route, 2, wrong);
+  checkEnumerator("Options::binding", options.binding, 2, wrong);
+  if (options.binding == BindingModel::Bindless && options.fallback) {
+    add(wrong, "fallback-bindless",
+        "a fallback has the places of each material's own shader, whose records are of another length",
+        "leave the fallback out, or bind by sets");
+  }
   std::set<Target> seen;
   for (const Target target : options.targets) {
     if (targetName(target).empty()) {
@@ -184,6 +190,12 @@ Diagnostics checkOptions(const Options& options) {
           fmt::format("the target {} has no specialization constants", targetName(target)),
           fmt::format("{} have them; for the others, parameters are uniform or baked",
                       namesOf(&targets::Row::specialization)));
+    } else if (options.binding == BindingModel::Bindless && !targets::row(target).bindless) {
+      add(wrong, "no-bindless",
+          fmt::format("the target {} has no arrays of textures from which each fragment takes another",
+                      targetName(target)),
+          fmt::format("{} have them; name those with --target, or bind by sets",
+                      namesOf(&targets::Row::bindless)));
     }
   }
   return wrong;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "targets/target.h"
@@ -73,13 +74,31 @@ struct Read {
       if (const std::optional<uint32_t> block = ir::blockOf(module, id)) blocks.insert(*block);
       if (module.dag[id].op != ir::Op::Input) continue;
       const ir::Input& input = module.dag.inputOf(id);
-      if (input.kind == ir::InputKind::Texture) textures.insert(input.field);
+      const bool own = input.kind == ir::InputKind::Texture && module.textures[input.field].array.empty();
+      if (own) textures.insert(input.field);
       if (input.kind == ir::InputKind::Attribute) attributes.insert(input.field);
     }
   }
 };
 
 }  // namespace
+
+/// What of WebGPU is no part of it.
+static Diagnostics withoutArrays(const ir::Module& module, std::span<const Target> targets) {
+  const bool arrays = std::any_of(module.textures.begin(), module.textures.end(),
+                                  [](const ir::TextureSlot& slot) { return !slot.array.empty(); });
+  const bool asked = std::any_of(targets.begin(), targets.end(), [](Target target) {
+    return targets::row(target).checker == targets::Checker::Tint;
+  });
+  if (!arrays || !asked) return {};
+  return {{"binding-arrays",
+           Severity::Warning,
+           {},
+           "the WGSL takes textures from arrays, of which WebGPU in browsers has none",
+           "a device of wgpu must have TEXTURE_BINDING_ARRAY and "
+           "SAMPLED_TEXTURE_AND_STORAGE_BUFFER_ARRAY_NON_UNIFORM_INDEXING; elsewhere bind by sets",
+           {}}};
+}
 
 Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets) {
   Measure limits(targets);
@@ -100,7 +119,8 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
     const auto lists = static_cast<uint32_t>(std::count_if(
         read.blocks.begin(), read.blocks.end(), [&](uint32_t i) { return module.blocks[i].list; }));
     uniforms = std::max(uniforms, static_cast<uint32_t>(read.blocks.size()) - lists);
-    textures = std::max(textures, static_cast<uint32_t>(read.textures.size()) + lists);
+    textures =
+        std::max(textures, static_cast<uint32_t>(read.textures.size()) + (module.bindless ? 0 : lists));
     for (const uint32_t index : read.attributes)
       locations = std::max(locations, module.attributes[index].location + 1);
   }
@@ -120,7 +140,9 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
   const auto varyings = static_cast<uint32_t>(module.varyings.size());
   limits.check(fmt::format("the stages have {} values between them", varyings), varyings,
                &DeviceLimits::varyings, "several numbers can be interpolated as one vector");
-  return limits.take();
+  Diagnostics found = limits.take();
+  for (Diagnostic& one : withoutArrays(module, targets)) found.push_back(std::move(one));
+  return found;
 }
 
 }  // namespace lacquer

@@ -94,8 +94,13 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
   Result<ir::Module> module = lower::lower(graph, library, loweringOf(options));
   if (!module) return module;
   if (after) after("lower", *module);
-  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after, options.relaxed,
-                                            optimization(options), choose});
+  return throughPasses(std::move(*module), {lightFacts(options, scene_lights),
+                                            after,
+                                            options.relaxed,
+                                            optimization(options),
+                                            choose,
+                                            {},
+                                            options.binding == BindingModel::Bindless});
 }
 
 Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {

@@ -28,7 +28,9 @@ int firstStage(Target target, bool has_vertex) {
   return first ? 0 : 1;
 }
 
-bool hasValidator(Target target) { return check::canCheck(target); }
+bool hasValidator(Target target, bool arrays) {
+  return check::canCheck(target) && (!arrays || targets::row(target).checker != targets::Checker::Tint);
+}
 
 Diagnostics withoutValidator(const Options& options) {
   Diagnostics all;
@@ -95,7 +97,12 @@ private:
     return fmt::format("{}\nLacquer {}, template {}", shader_.id, version(), shader_.module.template_name);
   }
 
-  bool validates(Target target) const { return options_.validate && hasValidator(target); }
+  bool validates(Target target) const {
+    const auto& all = shader_.module.textures;
+    const bool arrays =
+        std::any_of(all.begin(), all.end(), [](const ir::TextureSlot& slot) { return !slot.array.empty(); });
+    return options_.validate && hasValidator(target, arrays);
+  }
 
   /// Nothing checks it here: the tests compile and run it.
   void pack(const targets::Row& row) {
@@ -109,7 +116,7 @@ private:
   Result<std::string> printed(const targets::Row& row, int stage) {
     const ir::Module& module = row.dialect != nullptr ? legalized() : shader_.module;
     return targets::stageText(module, schedule::schedule(module, kStages[stage]), row.id,
-                              {head(), options_.argument_buffers});
+                              {head(), options_.argument_buffers || module.bindless});
   }
 
   void text(const targets::Row& row, int stage) {

@@ -48,7 +48,8 @@ int firstStage(Target target, bool has_vertex);
 /// What is made is a shader: the manifest says whether it was validated.
 inline bool isShader(Target target) { return !packsBlock(target); }
 /// Some compiler or validator on this machine checks the target's code.
-bool hasValidator(Target target);
+/// `arrays`: it has arrays of textures, of which compilers of WGSL know none.
+bool hasValidator(Target target, bool arrays = false);
 /// "not-validated", of each target of which shaders are wanted validated and nothing here can.
 Diagnostics withoutValidator(const Options& options);
 

@@ -126,6 +126,8 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Construct) return construct(id);
   if (value.op == Op::Swizzle) return swizzle(value);
   if (value.op == Op::Element) return element(value);
+  if (value.op == Op::TextureAt)
+    return {dialect_.textureAt(module_.textures[dag_.inputOf(value.args[0]).field], argument(value.args[1]))};
   if (value.op == Op::Carried && written_ != nullptr) return {carriedName(value)};
   if (value.op == Op::Column)
     return {dialect_.column(parenthesized(use(value.args[0]), Precedence::Postfix), value.payload)};
@@ -210,7 +212,10 @@ Expression Printer::blockField(const ir::Input& input) const {
 
 Expression Printer::element(const ir::Value& value) const {
   const auto [block, field] = ir::ListField::of(value);
-  return dialect_.element(module_.blocks[block], module_.blocks[block].fields[field], use(value.args[0]));
+  Expression made =
+      dialect_.element(module_.blocks[block], module_.blocks[block].fields[field], use(value.args[0]));
+  if (value.count > 1) made.text += fmt::format("[{}]", dag_.constantOf(value.args[1])[0]);
+  return made;
 }
 
 std::string Printer::carriedName(const ir::Value& carried) const {
@@ -538,6 +543,10 @@ Expression Dialect::element(const ir::Block& list, const ir::BlockField& field,
   return {fmt::format("{}s[{}].{}", name(list.instance), number.text, name(field.name))};
 }
 
+std::string Dialect::textureAt(const ir::TextureSlot& slot, std::string_view number) const {
+  return fmt::format("{}[{}]", name(slot.array), number);
+}
+
 std::string Dialect::loop(std::string_view counter, std::string_view first, std::string_view end) const {
   return fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", counter, first, end);
 }
@@ -586,6 +595,23 @@ std::string varyingName(const ir::Varying& varying) {
 }
 
 std::string outputName(const ir::Output& output) { return "out_" + output.name; }
+
+std::vector<uint32_t> declaredTextures(const ir::Module& module, const schedule::Program& program) {
+  std::vector<uint32_t> declared;
+  for (const uint32_t index : program.textures) {
+    const std::string& array = module.textures[index].array;
+    const bool known = !array.empty() && std::any_of(declared.begin(), declared.end(), [&](uint32_t other) {
+      return module.textures[other].array == array;
+    });
+    if (!known) declared.push_back(index);
+  }
+  return declared;
+}
+
+std::string samplerOf(std::string_view texture) {
+  const size_t name = std::min(texture.find('['), texture.size());
+  return fmt::format("{}_sampler{}", texture.substr(0, name), texture.substr(name));
+}
 
 void printMembers(Text& text, const Dialect& dialect, const ir::Block& block, bool whole) {
   uint32_t cursor = 0;

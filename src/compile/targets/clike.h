@@ -122,6 +122,8 @@ public:
   /// A field of the element of that number of a list.
   virtual Expression element(const ir::Block& list, const ir::BlockField& field,
                              const Expression& number) const;
+  /// A texture of an array, by its number.
+  virtual std::string textureAt(const ir::TextureSlot& slot, std::string_view number) const;
   /// The opening line of a loop from `first` to before `end`.
   virtual std::string loop(std::string_view counter, std::string_view first, std::string_view end) const;
   /// True for a target whose contract with the application may be broken by a page that anyone wrote: loops
@@ -162,6 +164,11 @@ inline constexpr std::string_view kRaise = "lacquer_highp";
 std::string attributeName(const ir::Attribute& attribute);  ///< "TEXCOORD_0": in_texcoord_0
 std::string varyingName(const ir::Varying& varying);        ///< v_…
 std::string outputName(const ir::Output& output);           ///< out_…
+
+/// The textures of a stage, of each array the first one alone, which stands for it.
+std::vector<uint32_t> declaredTextures(const ir::Module& module, const schedule::Program& program);
+/// What the sampler of a texture is called, `texture` being an expression: it has the same place in an array.
+std::string samplerOf(std::string_view texture);
 
 /// The members of a block, one a line. Where std140 or HLSL's packing would place a member elsewhere than the
 /// block says, padding stands before it, so that one declaration means the same bytes in every dialect.

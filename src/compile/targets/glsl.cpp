@@ -61,6 +61,11 @@ public:
             std::string_view head) const override {
     text.line(fmt::format("#version {}", row_.version));
     text.comments(head);
+    if (std::any_of(program.textures.begin(), program.textures.end(),
+                    [&](uint32_t index) { return !module.textures[index].array.empty(); })) {
+      text.blank();
+      text.line("#extension GL_EXT_nonuniform_qualifier : require");
+    }
     if (row_.precisions) precisions(text, module, program);
     constants(text, module, program);
     for (uint32_t index : program.blocks) block(text, module.blocks[index]);
@@ -229,13 +234,18 @@ private:
     text.line("};");
   }
 
+  std::string textureAt(const ir::TextureSlot& slot, std::string_view number) const override {
+    return fmt::format("{}[nonuniformEXT({})]", slot.array, number);
+  }
+
   void textures(Text& text, const ir::Module& module, const schedule::Program& program) const {
     if (!program.textures.empty()) text.blank();
-    for (uint32_t index : program.textures) {
+    for (const uint32_t index : declaredTextures(module, program)) {
       const ir::TextureSlot& slot = module.textures[index];
       const std::string place = this->place(slot.binding);
       const std::string layout = place.empty() ? "" : fmt::format("layout({}) ", place);
-      text.line(fmt::format("{}uniform {} {};", layout, ir::typeName(slot.type), slot.name));
+      text.line(fmt::format("{}uniform {} {};", layout, ir::typeName(slot.type),
+                            slot.array.empty() ? slot.name : slot.array + "[]"));
     }
   }
 

@@ -102,13 +102,13 @@ public:
 
   std::string texture(Type, std::string_view name, const Expression& at,
                       std::string_view lod) const override {
-    return lod.empty() ? fmt::format("{0}.Sample({0}_sampler, {1})", name, at.text)
-                       : fmt::format("{0}.SampleLevel({0}_sampler, {1}, {2})", name, at.text, lod);
+    return lod.empty() ? fmt::format("{}.Sample({}, {})", name, samplerOf(name), at.text)
+                       : fmt::format("{}.SampleLevel({}, {}, {})", name, samplerOf(name), at.text, lod);
   }
 
   std::string textureGrad(Type, std::string_view name, const Expression& at, std::string_view along_x,
                           std::string_view along_y) const override {
-    return fmt::format("{0}.SampleGrad({0}_sampler, {1}, {2}, {3})", name, at.text, along_x, along_y);
+    return fmt::format("{}.SampleGrad({}, {}, {}, {})", name, samplerOf(name), at.text, along_x, along_y);
   }
 
   std::string textureSize(Type, std::string_view name, std::string_view level, uint32_t axis) const override {
@@ -117,8 +117,12 @@ public:
 
   std::string comparison(std::string_view name, const Expression& at, bool top) const override {
     const std::string place = parenthesized(at, Precedence::Postfix);
-    return fmt::format("{0}.{1}({0}_sampler, {2}.xy, {2}.z)", name, top ? "SampleCmpLevelZero" : "SampleCmp",
-                       place);
+    return fmt::format("{0}.{1}({3}, {2}.xy, {2}.z)", name, top ? "SampleCmpLevelZero" : "SampleCmp", place,
+                       samplerOf(name));
+  }
+
+  std::string textureAt(const ir::TextureSlot& slot, std::string_view number) const override {
+    return fmt::format("{}[NonUniformResourceIndex({})]", slot.array, number);
   }
 
   /// An index would give a row.
@@ -154,7 +158,7 @@ public:
       block(text, module.blocks[index]);
     }
     if (!program.textures.empty()) blank();
-    for (uint32_t index : program.textures) texture(text, module.textures[index]);
+    for (const uint32_t index : declaredTextures(module, program)) texture(text, module.textures[index]);
     sizes(text, module, program);
     blank();
     openMain(text, parameters(module, program));
@@ -172,7 +176,7 @@ private:
     text.outdent();
   }
 
-  static bool ofObject(const ir::Block& block) { return block.role == ir::BlockRole::Object; }
+  static bool ofObject(const ir::Block& block) { return block.role == ir::BlockRole::Object && !block.list; }
 
   /// The objects of a frame in one buffer: a draw says which is its own, in a root constant.
   static void draw(Text& text, const ir::Module& module, const schedule::Program& program) {
@@ -260,6 +264,14 @@ private:
 
   void texture(Text& text, const ir::TextureSlot& slot) const {
     const bool compares = slot.type == Type::Texture2DShadow;
+    if (!slot.array.empty()) {
+      text.line("// A range without an end: Shader Model 5.1 and later.");
+      text.line(fmt::format("{} {}[] : register(t{}, space{});", type(slot.type), slot.array,
+                            slot.binding.binding, slot.binding.set));
+      text.line(fmt::format("SamplerState {}[] : register(s{}, space{});", samplerOf(slot.array),
+                            slot.binding.binding, slot.binding.set));
+      return;
+    }
     text.line(fmt::format("{} {} : {};", type(slot.type), slot.name, placeOf('t', slot.binding)));
     // A define of that name shares another texture's: the file's textures often have one sampler.
     text.line("#ifndef " + samplerName(slot));

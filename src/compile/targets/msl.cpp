@@ -2,6 +2,7 @@
 // is where resources are bound; nothing here compiles the text.
 #include <fmt/format.h>
 
+#include "targets/clike.h"
 #include "targets/target.h"
 
 #ifdef LACQUER_SPIRV_CROSS
@@ -17,6 +18,12 @@ MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers, bool li
   // A list's flat number is one of the textures', which are another kind in Metal.
   constexpr uint32_t kListBuffers = 16;
   return {0, list ? kListBuffers + binding.flat : binding.flat, binding.flat};
+}
+
+MslBinding mslArray(const ir::Binding& binding) {
+  const uint32_t number = binding.binding - ir::kMaterialBinding.binding - 1;
+  const uint32_t first = 2 * (ir::kMaterialBinding.binding + 1) + 2 * kMslTextures * number;
+  return {binding.set, first, first + kMslTextures};
 }
 
 #ifdef LACQUER_SPIRV_CROSS
@@ -75,18 +82,24 @@ private:
       at.msl_sampler = sampler;
       return spvc_compiler_msl_add_resource_binding(compiler_, &at) == SPVC_SUCCESS;
     };
-    const auto place = [&](const ir::Binding& binding, bool list) {
-      const MslBinding to = mslBinding(binding, argument_buffers_, list);
+    const auto put = [&](const ir::Binding& binding, const MslBinding& to) {
       const bool buffer =
           !argument_buffers_ || add(binding.set, SPVC_MSL_ARGUMENT_BUFFER_BINDING, to.buffer, 0);
       return buffer && add(binding.set, binding.binding, to.index, to.sampler);
+    };
+    const auto place = [&](const ir::Binding& binding, bool list) {
+      return put(binding, mslBinding(binding, argument_buffers_, list));
     };
     bool good = true;
     for (const uint32_t index : program.blocks) {
       const ir::Block& block = module.blocks[index];
       good = good && place(block.binding, block.list);
     }
-    for (const uint32_t index : program.textures) good = good && place(module.textures[index].binding, false);
+    for (const uint32_t index : declaredTextures(module, program)) {
+      const ir::TextureSlot& slot = module.textures[index];
+      good = good &&
+             (slot.array.empty() ? place(slot.binding, false) : put(slot.binding, mslArray(slot.binding)));
+    }
     return good;
   }
 
@@ -103,7 +116,8 @@ Result<std::string> mslText(const ir::Module& module, const schedule::Program& p
   if (spvc_context_create(&context) != SPVC_SUCCESS)
     return fail("spirv-cross", {}, "SPIRV-Cross cannot be used");
   Crossing crossing(Context(context, spvc_context_destroy), options.argument_buffers);
-  Result<std::string> text = crossing.run(module, program, writeSpirv(module, program, {.relaxed = false}));
+  Result<std::string> text = crossing.run(
+      module, program, writeSpirv(module, program, {.relaxed = false, .array_length = kMslTextures}));
   if (!text) return text;
   return commentText(options.head) + "\n" + *text;
 }

@@ -17,7 +17,7 @@ constexpr uint32_t kSets[] = {ir::kObjectSet, ir::kMaterialBinding.set, 0};
 /// The bindings of the uniform blocks of a set that the template has, read or not, and the material's.
 std::vector<uint32_t> blocksOf(const ir::Module& module, uint32_t set) {
   std::vector<uint32_t> bindings;
-  if (set == ir::kMaterialBinding.set) bindings.push_back(ir::kMaterialBinding.binding);
+  if (set == ir::kMaterialBinding.set && !module.bindless) bindings.push_back(ir::kMaterialBinding.binding);
   for (const ir::Block& block : module.blocks) {
     if (block.binding.set != set || block.list || block.role == ir::BlockRole::Material) continue;
     bindings.push_back(block.binding.binding);

@@ -80,6 +80,7 @@ struct Row {
 
   Checker checker = Checker::None;
   std::string_view version = {};         ///< the line that a text must begin with: "#version 450"
+  bool bindless = true;                  ///< BindingModel::Bindless is for it
   bool specialization = false;           ///< it has specialization constants
   bool argument_buffers = false;         ///< Options::argument_buffers is about it
   std::string_view binds = {};           ///< the manifest's member that says where its API binds; empty: none
@@ -130,6 +131,10 @@ struct MslBinding {
   uint32_t index = 0, sampler = 0;
 };
 MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers, bool list = false);
+/// The same of an array of textures, which is in an argument buffer and has that many, for Metal's have an
+/// end; the samplers lie behind them.
+inline constexpr uint32_t kMslTextures = 1024;
+MslBinding mslArray(const ir::Binding& binding);
 
 /// Target::Msl: the text of one stage, whose function is called `main0`. The module must be placed and bound.
 /// `head` as above. Errors: "msl-unavailable" where Lacquer was built without SPIRV-Cross; "spirv-cross",
@@ -162,8 +167,9 @@ std::vector<std::string> expressionTexts(const ir::Module& module, std::span<con
 
 /// The SPIR-V words of one stage, written directly: SPIR-V 1.3, Vulkan 1.1.
 struct SpirvOptions {
-  bool debug = false;   ///< OpLine toward the node source where known
-  bool relaxed = true;  ///< RelaxedPrecision for what the Dag says is relaxed
+  bool debug = false;         ///< OpLine toward the node source where known
+  bool relaxed = true;        ///< RelaxedPrecision for what the Dag says is relaxed
+  uint32_t array_length = 0;  ///< of arrays of textures; 0: they have no end
 };
 std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Program& program,
                                  const SpirvOptions& options);

@@ -161,13 +161,13 @@ public:
   std::string texture(Type type, std::string_view name, const Expression& at,
                       std::string_view lod) const override {
     const std::string place = coordinates(type, at);
-    return lod.empty() ? fmt::format("textureSample({0}, {0}_sampler, {1})", name, place)
-                       : fmt::format("textureSampleLevel({0}, {0}_sampler, {1}, {2})", name, place, lod);
+    return lod.empty() ? fmt::format("textureSample({}, {}, {})", name, samplerOf(name), place)
+                       : fmt::format("textureSampleLevel({}, {}, {}, {})", name, samplerOf(name), place, lod);
   }
 
   std::string textureGrad(Type type, std::string_view name, const Expression& at, std::string_view along_x,
                           std::string_view along_y) const override {
-    return fmt::format("textureSampleGrad({0}, {0}_sampler, {1}, {2}, {3})", name, coordinates(type, at),
+    return fmt::format("textureSampleGrad({}, {}, {}, {}, {})", name, samplerOf(name), coordinates(type, at),
                        along_x, along_y);
   }
 
@@ -179,8 +179,8 @@ public:
 
   std::string comparison(std::string_view name, const Expression& at, bool top) const override {
     const std::string place = parenthesized(at, Precedence::Postfix);
-    return fmt::format("textureSampleCompare{0}({1}, {1}_sampler, {2}.xy, {2}.z)", top ? "Level" : "", name,
-                       place);
+    return fmt::format("textureSampleCompare{0}({1}, {3}, {2}.xy, {2}.z)", top ? "Level" : "", name, place,
+                       samplerOf(name));
   }
 
   /// Typed, for a number without a suffix is of any type.
@@ -256,7 +256,7 @@ public:
       block(text, module.blocks[index]);
     }
     if (!program.textures.empty()) blank();
-    for (const uint32_t index : program.textures) texture(text, module.textures[index]);
+    for (const uint32_t index : declaredTextures(module, program)) texture(text, module.textures[index]);
     for (const Type type : lateTypes(module, program)) {
       blank();
       text.line(fmt::format("fn {0}(number: {1}) -> {1} {{", lateFunction(type), this->type(type)));
@@ -365,11 +365,14 @@ private:
   }
 
   void texture(Text& text, const ir::TextureSlot& slot) const {
-    const std::string name = this->name(slot.name);
-    const bool compares = slot.type == Type::Texture2DShadow;
-    text.line(fmt::format("{} var {}: {};", place(slot.binding, false), name, type(slot.type)));
-    text.line(fmt::format("{} var {}_sampler: {};", place(slot.binding, true), name,
-                          compares ? "sampler_comparison" : "sampler"));
+    const bool several = !slot.array.empty();
+    const std::string name = this->name(several ? slot.array : slot.name);
+    const std::string_view sampler = slot.type == Type::Texture2DShadow ? "sampler_comparison" : "sampler";
+    const auto of = [&](std::string_view one) {
+      return several ? fmt::format("binding_array<{}>", one) : std::string(one);
+    };
+    text.line(fmt::format("{} var {}: {};", place(slot.binding, false), name, of(type(slot.type))));
+    text.line(fmt::format("{} var {}_sampler: {};", place(slot.binding, true), name, of(sampler)));
   }
 
   /// Those whose numbers some operation of the stage must not see.

@@ -188,7 +188,7 @@ std::string packedManifest(const Contract& contract, Messages& messages) {
     PackedShader& shader = shaders.emplace_back();
     shader.id = one.shader.id();
     shader.reflection = &one.shader.reflection();
-    shader.argument_buffers = ShaderMaker::argumentBuffers(one.shader);
+    shader.argument_buffers = ShaderMaker::argumentBuffers(one.shader) || shader.reflection->bindless;
     for (const auto& [target, validated] : one.validated) {
       for (int stage = one.shader.hasVertexStage() ? 0 : 1; stage < 2; ++stage)
         shader.codes.push_back({std::string(targetName(target)), std::string(fileKind(target, stage)),

@@ -64,6 +64,12 @@ bool setRoute(const Json& value, lacquer_options& to) {
   return value == "direct" || value == "glslang";
 }
 
+bool setBinding(const Json& value, lacquer_options& to) {
+  if (value == "sets") to.options.binding = BindingModel::Sets;
+  if (value == "bindless") to.options.binding = BindingModel::Bindless;
+  return value == "sets" || value == "bindless";
+}
+
 bool setLights(const Json& value, lacquer_options& to) {
   Lights lights;
   if (value == "scene") lights.mode = Lights::Mode::Scene;
@@ -132,6 +138,7 @@ constexpr Row<lacquer_options> kRows[] = {
     {"template", "a string", setText<&Options::template_name>},
     {"targets", "an array of names of targets", setTargets},
     {"parameters", "\"uniform\", \"baked\" or \"spec\"", setParameters},
+    {"binding", "\"sets\" or \"bindless\"", setBinding},
     {"lights", "\"any\", \"scene\" or an object of counts", setLights},
     {"switches", "an object of true and false", setSwitches},
     {"ibl", kTruth, setBool<&Options::ibl>},

@@ -64,7 +64,7 @@ int lacquer_shader_texture(const lacquer_shader* shader, size_t index, lacquer_t
   const lacquer::ReflectedTexture& of = all.textures[index];
   const lacquer_texture made = {of.name.c_str(), of.type.c_str(),           of.sampler.c_str(),
                                 of.slot.c_str(), static_cast<int>(of.role), of.srgb ? 1 : 0,
-                                bindingOf(of)};
+                                bindingOf(of),   of.array.c_str(),          of.number};
   return fillRow(made, to, size);
 }
 

@@ -18,6 +18,7 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
   const auto add = [&](const Strings& more) { words.insert(words.end(), more.begin(), more.end()); };
   if (options.parameters == Parameters::Baked) add({"--params", "baked"});
   if (options.parameters == Parameters::Spec) add({"--params", "spec"});
+  if (options.binding == BindingModel::Bindless) add({"--binding", "bindless"});
   if (options.spirv_route == SpirvRoute::Glslang) add({"--spirv-from", "glslang"});
   if (options.debug) add({"--debug"});
   if (options.relaxed != 0) add({"--relaxed", fmt::format("{}", options.relaxed)});

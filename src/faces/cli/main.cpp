@@ -76,6 +76,12 @@ void addGeneration(CLI::App& verb, Flags& flags) {
       ->allow_extra_args(false);
   verb.add_flag("--msl-argument-buffers", flags.options.argument_buffers,
                 "Metal's resources in one argument buffer for each set, not in plain bindings");
+  verb.add_option(
+          "--binding", flags.binding,
+          "sets: bound for each object and material; bindless: lists of them and an array of textures, "
+          "one draw for many materials (docs/bindings.md)")
+      ->check(CLI::IsMember({"sets", "bindless"}))
+      ->capture_default_str();
   verb.add_option("--spirv-from", flags.spirv_from, "direct, or glslang: through the GLSL, as a cross-check")
       ->check(CLI::IsMember({"direct", "glslang"}))
       ->capture_default_str();

@@ -13,7 +13,7 @@ namespace lacquer::cli {
 struct OptionFlags {
   Options options;
   Strings targets, switches;
-  std::string lights = "any", params = "uniform", dfg = "table", spirv_from = "direct";
+  std::string lights = "any", params = "uniform", dfg = "table", spirv_from = "direct", binding = "sets";
   bool no_validate = false, no_sync = false, no_ibl = false, no_multiple_scattering = false;
 };
 

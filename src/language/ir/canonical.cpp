@@ -131,6 +131,9 @@ private:
       number(place);
       if (module_.beside_another && slot.optional) number(slot.binding.flat);
       text(slot.name);
+      if (slot.array.empty()) continue;
+      text(slot.array);
+      number(slot.number);
     }
   }
 

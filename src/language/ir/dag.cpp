@@ -62,6 +62,8 @@ std::optional<Type> specialType(Op op, std::span<const Type> operands) {
   if (op == Op::MatMul && isMatrix(operands[0]) && operands[1] == partType(operands[0])) return operands[1];
   if (op == Op::TextureSize)
     return isTexture(operands[0]) && operands[1] == Type::Int ? std::optional(Type::Int) : std::nullopt;
+  if (op == Op::TextureAt)
+    return isTexture(operands[0]) && operands[1] == Type::Int ? std::optional(operands[0]) : std::nullopt;
   const bool lookup =
       operands.size() > 1 && isTexture(operands[0]) && operands[1] == coordinateType(operands[0]);
   if (!lookup) return std::nullopt;
@@ -296,9 +298,10 @@ ValueId Dag::select(ValueId condition, ValueId yes, ValueId no) {
 
 ValueId Dag::uinteger(uint32_t i) { return constant(Type::UInt, {whole<double>(i)}); }
 
-ValueId Dag::element(ValueId number, Type type, const ListField& field) {
+ValueId Dag::element(ValueId number, Type type, const ListField& field, ValueId index) {
   assert(values_[number].type == Type::Int);
-  return makeRaw(Op::Element, type, {{number}}, field.payload());
+  const std::array<ValueId, 2> operands = {number, index};
+  return makeRaw(Op::Element, type, {operands.data(), index == kNoValue ? 1U : 2U}, field.payload());
 }
 
 ValueId Dag::carried(ValueId loop, uint32_t number) {
@@ -321,7 +324,7 @@ ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   if (same) return id;
   const Value value = now;
   if (value.op == Op::Construct) return construct(value.type, operands);
-  if (value.op == Op::Element) return element(operands[0], value.type, ListField::of(value));
+  if (value.op == Op::Element) return makeRaw(value.op, value.type, operands, value.payload);
   if (value.op == Op::Column) return column(operands[0], value.payload);
   if (value.op == Op::Carried) return carried(operands[0], value.payload);
   if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);

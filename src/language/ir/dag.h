@@ -180,7 +180,8 @@ public:
   /// `yes` where the Bool holds, else `no`: two values of one type, of any but textures.
   ValueId select(ValueId condition, ValueId yes, ValueId no);
   /// What a list's element of that number, an Int, has in a field of that type.
-  ValueId element(ValueId number, Type type, const ListField& field);
+  /// `index`: of a field that is an array, a constant.
+  ValueId element(ValueId number, Type type, const ListField& field, ValueId index = kNoValue);
 
   /// The number of another loop, for its inputs.
   uint32_t openLoop() { return loops_++; }

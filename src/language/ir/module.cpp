@@ -180,7 +180,10 @@ private:
     const bool there = block < module_.blocks.size() && module_.blocks[block].list &&
                        field < module_.blocks[block].fields.size() &&
                        module_.blocks[block].fields[field].type == dag_[id].type;
-    if (!there || dag_[dag_[id].args[0]].type != Type::Int)
+    const bool array = there && module_.blocks[block].fields[field].array != 0;
+    const bool indexed = dag_[id].count == 2 && dag_.isConstant(dag_[id].args[1]);
+    if (!there || dag_[dag_[id].args[0]].type != Type::Int || (dag_[id].count != 1 && !indexed) ||
+        array != indexed)
       complain("value {} reads a list's field that is not there", id);
   }
 

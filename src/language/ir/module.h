@@ -81,6 +81,7 @@ struct Block {
   uint32_t size = 0;   ///< bytes of one element, a multiple of 16; of a list its stride
   Binding binding{};   ///< by the template; the material's by the place pass
   /// It has elements without end, in a storage buffer (in ESSL a texture), and is read by Op::Element alone.
+  /// A material's and an object's are lists where the module is bindless.
   bool list = false;
 
   /// In the texts an array and a list have an `s` behind the names of their elements.
@@ -112,6 +113,8 @@ struct TextureSlot {
   int texture = -1;                   ///< glTF texture index, -1 when none
   std::string pointer;                ///< JSON pointer of the textureInfo
   Binding binding{};                  ///< an environment's by the template, a material's by the bind pass
+  std::string array{};  ///< not empty: it is one of this array, at the number that the material's record has
+  uint32_t number = 0;  ///< then: that field of the record
 };
 
 struct Attribute {
@@ -192,6 +195,7 @@ struct Module {
   std::optional<Optimized> optimized{};
   std::vector<std::string> displaces{};  ///< the template's givens that the vertices have elsewhere
   bool sums_lights = false;              ///< an output of the template is a sum over the lights
+  bool bindless = false;                 ///< its objects and materials are elements of lists
   bool beside_another = false;           ///< its places are those of a program that it stands beside
   bool spec_constants =
       false;  ///< parameters are specialization constants: only the animated ones are in a material block

@@ -167,6 +167,7 @@ uint32_t Body::special(ValueId id) {
   if (op == Op::Column) return column(id);
   if (ir::readsTexture(op)) return texture(id);
   if (op == Op::TextureSize) return textureSize(id);
+  if (op == Op::TextureAt) return textureAt(id);
   return operation(id);
 }
 
@@ -310,22 +311,33 @@ uint32_t Body::blockField(ValueId id, const ir::Input& input, int component) {
   return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1);
 }
 
-/// Loads a field of a list's element.
-uint32_t Body::element(ValueId id) {
-  const ir::ListField from = ir::ListField::of(dag_[id]);
-  const uint32_t number = value(dag_[id].args[0]);
+/// Loads a field of a list's element, or a column of it where that is not negative: `id` is the value that it
+/// becomes.
+uint32_t Body::element(ValueId id, int column) {
+  const ir::Value& from_value = dag_[column < 0 ? id : dag_[id].args[0]];
+  const ir::ListField from = ir::ListField::of(from_value);
+  const uint32_t number = value(from_value.args[0]);
+  const uint32_t index = from_value.count > 1 ? value(from_value.args[1]) : 0;
   const uint32_t pointer = globals_.pointer(spv::StorageClassStorageBuffer, kindOf(dag_[id].type));
   const uint32_t zero = globals_.integer(0);
   const uint32_t field = globals_.integer(static_cast<int32_t>(from.field));
+  const uint32_t part = column < 0 ? 0 : globals_.integer(column);
   const uint32_t chain = globals_.newId();
-  code_.op(spv::OpAccessChain, pointer, chain, interface_.blocks[from.block], zero, number, field);
+  code_.begin(spv::OpAccessChain);
+  for (const uint32_t word : {pointer, chain, interface_.blocks[from.block], zero, number, field})
+    code_.word(word);
+  if (index != 0) code_.word(index);
+  if (part != 0) code_.word(part);
+  code_.end();
   return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1);
 }
 
 /// Loads a column of a matrix, which is a field of a block.
 uint32_t Body::column(ValueId id) {
   const ir::Value& v = dag_[id];
-  return blockField(id, dag_.inputOf(v.args[0]), static_cast<int>(v.payload));
+  const auto number = static_cast<int>(v.payload);
+  if (dag_[v.args[0]].op == Op::Element) return element(id, number);
+  return blockField(id, dag_.inputOf(v.args[0]), number);
 }
 
 uint32_t Body::construct(ValueId id) {
@@ -383,6 +395,22 @@ uint32_t Body::texture(ValueId id) {
   return instruction(id, {ir::SpirvSet::Core, static_cast<uint32_t>(opcode)}, operands.data(), count);
 }
 
+/// What is taken from an array by a number that differs among the fragments, or is made of it.
+uint32_t Body::nonUniform(uint32_t made) {
+  globals_.decorations.op(spv::OpDecorate, made, spv::DecorationNonUniform);
+  return made;
+}
+
+/// Loads a texture of an array, with its sampler.
+uint32_t Body::textureAt(ValueId id) {
+  const ir::Value& v = dag_[id];
+  const uint32_t number = value(v.args[1]);
+  const uint32_t pointer = globals_.pointer(spv::StorageClassUniformConstant, kindOf(v.type));
+  const uint32_t chain = nonUniform(globals_.newId());
+  code_.op(spv::OpAccessChain, pointer, chain, interface_.textures[dag_.inputOf(v.args[0]).field], number);
+  return nonUniform(instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1));
+}
+
 /// The query takes an image, without its sampler, and gives all of its axes.
 uint32_t Body::textureSize(ValueId id) {
   const ir::Value& v = dag_[id];
@@ -393,6 +421,7 @@ uint32_t Body::textureSize(ValueId id) {
   const uint32_t image_type = globals_.type(imageKindOf(type));
   const uint32_t size_type = globals_.type(ir::vectorType(Type::Int, ir::sizeCount(type)));
   const uint32_t image = globals_.newId();
+  if (dag_[v.args[0]].op == Op::TextureAt) nonUniform(image);
   code_.op(spv::OpImage, image_type, image, sampled);
   const uint32_t size = globals_.newId();
   code_.op(spv::OpImageQuerySizeLod, size_type, size, image, level);

@@ -52,13 +52,15 @@ private:
   uint32_t splat(ir::ValueId scalar, ir::Type like);
   uint32_t constant(ir::ValueId id);
   uint32_t input(ir::ValueId id);
+  uint32_t nonUniform(uint32_t made);
   uint32_t load(ir::ValueId id, uint32_t variable);
   uint32_t blockField(ir::ValueId id, const ir::Input& input, int component);
-  uint32_t element(ir::ValueId id);
+  uint32_t element(ir::ValueId id, int column = -1);
   uint32_t column(ir::ValueId id);
   uint32_t construct(ir::ValueId id);
   uint32_t swizzle(ir::ValueId id);
   uint32_t texture(ir::ValueId id);
+  uint32_t textureAt(ir::ValueId id);
   uint32_t textureSize(ir::ValueId id);
   uint32_t component(uint32_t vector, uint32_t index);
   std::pair<uint32_t, uint32_t> boundsOf(const ir::LightGroup& group, const ir::Value& sum);

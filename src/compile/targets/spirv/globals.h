@@ -88,6 +88,11 @@ public:
   void asksForSizes() { sizes_ = true; }
   bool sizesAsked() const { return sizes_; }
 
+  /// It has arrays of textures from which each fragment may take another one; `endless`: of any length.
+  void asksForArrays(bool endless) { arrays_ = true, endless_ = endless; }
+  bool arraysAsked() const { return arrays_; }
+  bool endlessAsked() const { return endless_; }
+
   /// A string for OpLine.
   uint32_t string(std::string_view text);
   void name(uint32_t id, std::string_view text);
@@ -107,7 +112,7 @@ private:
 
   uint32_t next_id_ = 1;
   uint32_t glsl_set_ = 0;
-  bool sizes_ = false;
+  bool sizes_ = false, arrays_ = false, endless_ = false;
   std::array<uint32_t, kKinds> types_{};
   /// The storage classes in use are 0 to 3, and that of storage buffers, which is put at 4.
   std::array<std::array<uint32_t, kKinds>, 5> pointers_{};

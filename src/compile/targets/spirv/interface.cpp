@@ -1,6 +1,7 @@
 #include "targets/spirv/interface.h"
 
 #include <map>
+#include <string>
 
 #include "targets/clike.h"
 #include "targets/target.h"
@@ -11,8 +12,8 @@ namespace {
 
 class Declarer {
 public:
-  Declarer(const ir::Module& module, const schedule::Program& program, Globals& globals)
-      : module_(module), program_(program), globals_(globals) {}
+  Declarer(const ir::Module& module, const schedule::Program& program, Globals& globals, uint32_t length)
+      : module_(module), program_(program), globals_(globals), array_length_(length) {}
 
   Interface run() {
     made_.blocks.resize(module_.blocks.size());
@@ -24,7 +25,7 @@ public:
     made_.constant_components.resize(module_.parameters.size());
     for (const uint32_t p : program_.parameters) constant(p);
     for (const uint32_t b : program_.blocks) made_.blocks[b] = block(module_.blocks[b]);
-    for (const uint32_t t : program_.textures) made_.textures[t] = texture(module_.textures[t]);
+    for (const uint32_t t : program_.textures) made_.textures[t] = textureOrArray(module_.textures[t]);
     inputs();
     outputs();
     return std::move(made_);
@@ -140,6 +141,26 @@ private:
     globals_.name(made_.constants[index], p.constant_name);
   }
 
+  /// The textures of an array have one variable.
+  uint32_t textureOrArray(const ir::TextureSlot& slot) {
+    if (slot.array.empty()) return texture(slot);
+    uint32_t& known = texture_arrays_[slot.array];
+    if (known != 0) return known;
+    globals_.asksForArrays(array_length_ == 0);
+    const auto storage = spv::StorageClassUniformConstant;
+    const uint32_t element = globals_.type(slot.type);
+    const uint32_t length = array_length_ == 0 ? 0 : globals_.integer(static_cast<int32_t>(array_length_));
+    const uint32_t type = globals_.newId(), pointer = globals_.newId();
+    if (length == 0)
+      globals_.declarations.op(spv::OpTypeRuntimeArray, type, element);
+    else
+      globals_.declarations.op(spv::OpTypeArray, type, element, length);
+    globals_.declarations.op(spv::OpTypePointer, pointer, storage, type);
+    known = variable(storage, pointer, slot.array);
+    bindAt(known, slot.binding);
+    return known;
+  }
+
   uint32_t texture(const ir::TextureSlot& slot) {
     const auto storage = spv::StorageClassUniformConstant;
     const uint32_t id = variable(storage, globals_.pointer(storage, kindOf(slot.type)), slot.name);
@@ -193,14 +214,17 @@ private:
   const ir::Module& module_;
   const schedule::Program& program_;
   Globals& globals_;
+  uint32_t array_length_;
   std::map<std::pair<ir::Type, uint32_t>, uint32_t> arrays_;  ///< by element and length
+  std::map<std::string, uint32_t> texture_arrays_;            ///< by name
   Interface made_;
 };
 
 }  // namespace
 
-Interface declareInterface(const ir::Module& module, const schedule::Program& program, Globals& globals) {
-  return Declarer(module, program, globals).run();
+Interface declareInterface(const ir::Module& module, const schedule::Program& program, Globals& globals,
+                           uint32_t array_length) {
+  return Declarer(module, program, globals, array_length).run();
 }
 
 }  // namespace lacquer::targets::spirv

@@ -24,6 +24,8 @@ struct Interface {
   std::vector<uint32_t> entry_point;  ///< all inputs and outputs
 };
 
-Interface declareInterface(const ir::Module& module, const schedule::Program& program, Globals& globals);
+/// `array_length`: SpirvOptions::array_length.
+Interface declareInterface(const ir::Module& module, const schedule::Program& program, Globals& globals,
+                           uint32_t array_length);
 
 }  // namespace lacquer::targets::spirv

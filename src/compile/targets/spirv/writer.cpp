@@ -11,7 +11,7 @@ using spirv::Words;
 std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Program& program,
                                  const SpirvOptions& options) {
   spirv::Globals globals;
-  const spirv::Interface interface = declareInterface(module, program, globals);
+  const spirv::Interface interface = declareInterface(module, program, globals, options.array_length);
   spirv::Body body(module, program, interface, globals, options);
   const uint32_t main = body.write();
   const bool fragment = program.stage == ir::Stage::Fragment;
@@ -27,6 +27,14 @@ std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Progr
   }
   head.op(spv::OpCapability, spv::CapabilityShader);
   if (globals.sizesAsked()) head.op(spv::OpCapability, spv::CapabilityImageQuery);
+  if (globals.arraysAsked()) {
+    head.op(spv::OpCapability, spv::CapabilityShaderNonUniform);
+    if (globals.endlessAsked()) head.op(spv::OpCapability, spv::CapabilityRuntimeDescriptorArray);
+    head.op(spv::OpCapability, spv::CapabilitySampledImageArrayNonUniformIndexing);
+    head.begin(spv::OpExtension);
+    head.text("SPV_EXT_descriptor_indexing");
+    head.end();
+  }
   if (globals.importsGlsl()) {
     head.begin(spv::OpExtInstImport);
     head.word(globals.glslSet());
