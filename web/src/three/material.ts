@@ -11,6 +11,7 @@ import { changedNumbers, clockValues, esslOf, type Essl } from '../renderers/sha
 import { environmentIn, tablesOf, type Environment } from './environment.js';
 import { lightsOf } from './lights.js';
 import { sceneBehind } from './behind.js';
+import { kShadows } from './shadows.js';
 import { instancesOf, threeText } from './text.js';
 
 /** The attributes of a mesh that its shader may use. */
@@ -81,7 +82,7 @@ export interface MaterialOptions {
 }
 
 /** Draws a graph. It has the lights, the fog, the tone mapping and the colour space of the renderer and its scene, skins, morph
- * targets and instances; the surroundings are those of setEnvironment(). Shadows fall from it, but not on it. */
+ * targets and instances; the surroundings are those of setEnvironment(). Shadows fall from it and on it. */
 export class LacquerMaterial extends ShaderMaterial {
   readonly isLacquerMaterial = true;
   /** Instead of the scene's. */
@@ -115,9 +116,17 @@ export class LacquerMaterial extends ShaderMaterial {
     for (const { name, content } of made.interface.textures) this.uniforms[name] = { value: textures[name] ?? standIn(content) };
     for (const [name, table] of Object.entries(tablesOf(lacquer))) if (this.uniforms[name]) this.uniforms[name].value = table;
     Object.assign(this.uniforms, UniformsUtils.clone(UniformsLib.fog));
+    if (made.instances.has('Lights')) this.takeShadows();
     this.looksThrough = made.instances.has('SeeThrough');
     this.set({});
     this.addEventListener('dispose', () => this.textures.forEach((each) => each.dispose()));
+  }
+
+  /** Has three.js give it what its own lit materials have. */
+  private takeShadows(): void {
+    this.lights = true;
+    Object.assign(this.uniforms, UniformsUtils.clone(UniformsLib.lights));
+    for (const uniform of Object.keys(kShadows)) this.uniforms[uniform] = { value: [] };
   }
 
   /** The numbers that set() takes. */
@@ -177,8 +186,9 @@ export class LacquerMaterial extends ShaderMaterial {
     const lights = this.made.instances.get('Lights');
     const { array: size = 0, fields = [] } = this.made.interface.uniforms.find(({ block }) => block === 'Lights') ?? {};
     const areas = fields.some(({ name }) => name === 'area_radiance');
-    const { elements, count } = lights ? lightsOf(renderer, scene, camera, size, areas) : { elements: [], count: 0 };
+    const { elements, count, shadows } = lights ? lightsOf(renderer, scene, camera, size, areas) : { elements: [], count: 0, shadows: {} };
     if (lights) this.uniforms[lights].value = elements;
+    for (const [uniform, from] of Object.entries(shadows)) this.uniforms[uniform].value = from;
     const environment = this.environment ?? environmentIn(scene);
     for (const [name, texture] of Object.entries(environment.textures)) if (this.uniforms[name]) this.uniforms[name].value = texture;
     const { environmentIntensity = 1, environmentRotation } = scene;

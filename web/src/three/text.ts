@@ -2,6 +2,7 @@
 // blocks, and has a main() that ends with what the renderer does to colours.
 import { asFunction, kBlock, kInput, semanticOf } from '../renderers/text.js';
 import type { Interface } from '../types.js';
+import { fragmentShadows, shadowed, vertexShadows } from './shadows.js';
 
 /** The names that three.js's geometries have for glTF's attributes. `under`: the define under which three.js declares it; an
  * empty one: always. */
@@ -85,17 +86,19 @@ export function instancesOf(essl: string): Map<string, string> {
   }));
 }
 
-/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, fog, tone mapping and colour spaces are added. */
+/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, shadows, fog, tone mapping and colour spaces are added. */
 export function threeText(essl: string, stage: 'vertex' | 'fragment', shader: Interface): string {
   const vertex = stage === 'vertex';
   const to = new Rewriting(vertex, shader);
-  const bare = asFunction(essl);
+  const lights = shader.uniforms.find(({ block }) => block === 'Lights')?.array ?? 0;
+  const shadows = lights === 0 ? { before: [], fill: [] } : vertex ? vertexShadows(essl) : fragmentShadows(lights);
+  const bare = lights === 0 ? asFunction(essl) : shadowed(asFunction(essl), vertex);
   const text = (vertex ? bare.replace(kInput, to.input) : bare).replace(kBlock, to.block);
-  const main = ['void main() {', ...to.fill.map((line) => (line.startsWith('#') ? line : `    ${line}`)), '    surface();'];
+  const main = ['void main() {', ...to.fill.map((line) => (line.startsWith('#') ? line : `    ${line}`)), ...(vertex ? [] : shadows.fill), '    surface();'];
   if (vertex) {
-    return ['#include <fog_pars_vertex>', text, ...main, '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '}', ''].join('\n');
+    return ['#include <fog_pars_vertex>', ...shadows.before, text, ...main, ...shadows.fill, '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '}', ''].join('\n');
   }
   const ends = ['tonemapping', 'colorspace', 'fog', 'premultiplied_alpha'].map((chunk) => `#include <${chunk}_fragment>`);
   const [color] = shader.outputs as { name: string }[];
-  return ['#include <fog_pars_fragment>', text, `#define gl_FragColor out_${color.name}`, ...main, ...ends, '}', ''].join('\n');
+  return ['#include <fog_pars_fragment>', ...shadows.before, text, `#define gl_FragColor out_${color.name}`, ...main, ...ends, '}', ''].join('\n');
 }
