@@ -450,6 +450,65 @@ test("shadows fall on it as on three.js's own materials", async () => {
   assert.ok(own.every((x) => Math.abs(x - 1) < 1e-3), 'receiveShadow is false');
 });
 
+test('instances have their colours, times those of their vertices', async () => {
+  const at = await inPage(() => {
+    const white = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } };
+    const { geometry } = quad();
+    const drawn = (mesh, json) => {
+      mesh.material = lacquered.materialFrom(lacquer, json, mesh);
+      const scene = new THREE.Scene();
+      scene.add(mesh, lamp());
+      return colours(scene, camera(), 1).slice(0, 3);
+    };
+    const tinted = () => {
+      const mesh = new THREE.InstancedMesh(geometry, undefined, 1);
+      mesh.setMatrixAt(0, new THREE.Matrix4());
+      mesh.setColorAt(0, new THREE.Color().setRGB(0.2, 0.5, 1));
+      return mesh;
+    };
+    const based = (...color) => drawn(quad(), { pbrMetallicRoughness: { ...white.pbrMetallicRoughness, baseColorFactor: [...color, 1] } });
+    const own = drawn(tinted(), white);
+    geometry.setAttribute('color', new THREE.Float32BufferAttribute(new Array(12).fill(0.5), 3));
+    return { own, expected: based(0.2, 0.5, 1), both: drawn(tinted(), white), half: based(0.1, 0.25, 0.5) };
+  });
+  at.own.forEach((x, i) => assert.ok(Math.abs(x - at.expected[i]) < 1e-3, `${at.own}, not ${at.expected}`));
+  at.both.forEach((x, i) => assert.ok(Math.abs(x - at.half[i]) < 1e-3, `${at.both}, not ${at.half}`));
+  assert.ok(at.own[2] > 2 * at.own[0], `${at.own}`);
+});
+
+test("clipping planes cut it as they cut three.js's own materials", async () => {
+  const at = await inPage(() => {
+    const glowing = { emissiveFactor: [1, 1, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] } };
+    const mesh = quad();
+    mesh.position.set(0.1, 0.05, 0);
+    const scene = new THREE.Scene();
+    scene.add(mesh);
+    const planes = [new THREE.Plane(new THREE.Vector3(1, 0.3, 0).normalize(), 0.1), new THREE.Plane(new THREE.Vector3(0, -1, 0), 0.3)];
+    const seen = (material, clipIntersection) => {
+      mesh.material = material;
+      Object.assign(material, { clippingPlanes: planes, clipIntersection });
+      renderer.localClippingEnabled = true;
+      const drawn = colours(scene, camera(), 32).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+      renderer.localClippingEnabled = false;
+      return drawn;
+    };
+    const both = (intersection) => [lacquered.materialFrom(lacquer, glowing, mesh), new THREE.MeshBasicMaterial()].map((material) => seen(material, intersection));
+    const all = [both(false), both(true)];
+    renderer.clippingPlanes = planes.slice(1);
+    all.push([lacquered.materialFrom(lacquer, glowing, mesh), new THREE.MeshBasicMaterial()].map((material) => {
+      mesh.material = material;
+      return colours(scene, camera(), 32).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+    }));
+    renderer.clippingPlanes = [];
+    return all;
+  });
+  at.forEach(([own, theirs], i) => {
+    const sum = theirs.reduce((all, x) => all + x, 0);
+    assert.ok(sum > 100 && sum < 1000, `${i}: ${sum}`);
+    assert.ok(own.filter((x, at) => x !== theirs[at]).length <= 2, `${i}: not as the ${sum} pixels that three.js draws`);
+  });
+});
+
 test('two renderers draw one scene, each as it is now', async () => {
   const [first, second, changed] = await inPage(() => {
     const other = new THREE.WebGLRenderer();

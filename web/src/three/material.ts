@@ -2,7 +2,7 @@
 import {
   ClampToEdgeWrapping, DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, LinearFilter, Material, Matrix4, MirroredRepeatWrapping,
   NearestFilter, Quaternion, RepeatWrapping, RGBAFormat, ShaderMaterial, SRGBColorSpace, UniformsLib, UniformsUtils, Vector2, type BufferAttribute,
-  type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
+  type BufferGeometry, type Camera, type InstancedMesh, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
 } from 'three';
 import type { Graph, Lacquer } from '../index.js';
 import type { Attribute, Field, GraphTexture, Message, Options, Parameter, Values } from '../types.js';
@@ -22,6 +22,7 @@ export function attributesOf(mesh: Mesh): Attribute[] {
     ['uv2', 'TEXCOORD_2'], ['uv3', 'TEXCOORD_3'],
   ];
   const has = named.filter(([name]) => attributes[name]).map(([, attribute]) => attribute);
+  if ((mesh as InstancedMesh).instanceColor && !attributes.color) has.push('COLOR_0');
   if ((mesh as SkinnedMesh).isSkinnedMesh) has.push('JOINTS_0', ...(attributes.joints_1 ? ['JOINTS_1' as const] : []));
   if (Object.keys(morphAttributes).length > 0) has.push('MORPH_TARGETS');
   return has;
@@ -82,7 +83,7 @@ export interface MaterialOptions {
 }
 
 /** Draws a graph. It has the lights, the fog, the tone mapping and the colour space of the renderer and its scene, skins, morph
- * targets and instances; the surroundings are those of setEnvironment(). Shadows fall from it and on it. */
+ * targets, instances and clipping planes; the surroundings are those of setEnvironment(). Shadows fall from it and on it. */
 export class LacquerMaterial extends ShaderMaterial {
   readonly isLacquerMaterial = true;
   /** Instead of the scene's. */
@@ -105,7 +106,7 @@ export class LacquerMaterial extends ShaderMaterial {
     { textures = {}, options = {}, messages = [] }: MaterialOptions = {},
     made = make(graph, options, messages),
   ) {
-    super({ glslVersion: GLSL3, vertexShader: made.text.vertex, fragmentShader: made.text.fragment, fog: true });
+    super({ glslVersion: GLSL3, vertexShader: made.text.vertex, fragmentShader: made.text.fragment, fog: true, clipping: true });
     this.type = 'LacquerMaterial';
     this.made = made;
     this.name = made.shader.id;

@@ -32,13 +32,13 @@ interface Added {
 /** Lines for scenes with shadows alone. */
 const where = (lines: string[]): string[] => ['#ifdef USE_SHADOWMAP', ...lines, '#endif'];
 
-/** Behind surface(): where the vertex is on each map. */
+/** Behind surface(), where three.js's names for the vertex are known: where it is on each map. */
 export function vertexShadows(essl: string): Added {
   const normal = /^out vec3 v_normal;$/m.test(essl) ? 'mat3(viewMatrix) * v_normal' : 'vec3(0.0)';
   return {
-    before: where(['#include <common>', '#include <shadowmap_pars_vertex>', 'vec4 lacquer_world;']),
+    before: where(['#include <common>', '#include <shadowmap_pars_vertex>']),
     fill: where([
-      '    vec4 worldPosition = lacquer_world;', '    vec4 mvPosition = viewMatrix * worldPosition;',
+      '    vec4 worldPosition = lacquer_world;',
       `    vec3 transformedNormal = ${normal};`, '#include <shadowmap_vertex>',
     ]),
   };
@@ -60,12 +60,8 @@ export function fragmentShadows(size: number): Added {
   };
 }
 
-/** A stage whose lights are dimmed by shadows, or which tells where its vertex is. */
-export function shadowed(text: string, vertex: boolean): string {
-  if (!vertex) {
-    const dimmed = '#ifdef USE_SHADOWMAP\n#define RADIANCE(i) (lights[i].radiance * unshadowed[i])\n#else\n#define RADIANCE(i) lights[i].radiance\n#endif';
-    return text.replace(/lights\[(\w+)\]\.radiance\b/g, 'RADIANCE($1)').replace(/^void surface\(\)/m, `${dimmed}\n\nvoid surface()`);
-  }
-  return text.replace(/^( *)gl_Position = frame\.view_projection \* (.+);$/m, (line, indent, world) =>
-    `${line}\n#ifdef USE_SHADOWMAP\n${indent}lacquer_world = ${world};\n#endif`);
+/** A fragment stage whose lights are dimmed by shadows. */
+export function shadowed(text: string): string {
+  const dimmed = '#ifdef USE_SHADOWMAP\n#define RADIANCE(i) (lights[i].radiance * unshadowed[i])\n#else\n#define RADIANCE(i) lights[i].radiance\n#endif';
+  return text.replace(/lights\[(\w+)\]\.radiance\b/g, 'RADIANCE($1)').replace(/^void surface\(\)/m, `${dimmed}\n\nvoid surface()`);
 }
