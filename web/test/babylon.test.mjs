@@ -449,6 +449,69 @@ test('shadows fall from it on what Babylon.js draws', async () => {
   assert.ok(lit > 0.3 && shaded < 0.1 * lit, `${lit} ${shaded}`);
 });
 
+/** What is left of a lamp's light over a wall behind a small square, by Lacquer's material and by Babylon.js's own. */
+async function shares({ kind, filter, others = 0, receives = true, rightHanded = true }) {
+  const scene = sceneOf(rightHanded);
+  const camera = cameraOf(scene);
+  const { DirectionalLight, PBRMaterial, PointLight, ShadowGenerator, SpotLight } = BABYLON;
+  const [near, to] = [placed(scene, 0.4, 0.3, 2), placed(scene, -0.4, -0.3, -2)];
+  const kinds = {
+    directional: () => new DirectionalLight('lamp', to, scene), point: () => new PointLight('lamp', near, scene),
+    spot: () => new SpotLight('lamp', near, to, 1.2, 1, scene),
+  };
+  // Lights without a shadow before it: the number of a shadow is not that of a caster.
+  for (let i = 0; i < others; ++i) kinds[['point', 'directional', 'spot'][i]]().intensity = 1e-6;
+  const lamp = kinds[kind]();
+  lamp.position = near;
+  [lamp.shadowMinZ, lamp.shadowMaxZ, lamp.intensity] = [0.2, 5, 10];
+  const wall = quadOf(scene);
+  wall.receiveShadows = receives;
+  const square = quadOf(scene);
+  square.scaling.setAll(0.2);
+  square.position = placed(scene, 0.05, 0.1, 0.5);
+  square.material = new PBRMaterial('square', scene);
+  // Seen by the lamp alone.
+  Object.assign(square.material, { backFaceCulling: false, disableColorWrite: true, disableDepthWrite: true });
+  const drawn = async (material, casts) => {
+    wall.material = material;
+    scene.shadowsEnabled = casts;
+    await colours(scene, camera, 32);
+    return (await colours(scene, camera, 32)).filter((_, i) => i % 4 === 0);
+  };
+  const shadows = new ShadowGenerator(128, lamp);
+  shadows.filter = ShadowGenerator[filter];
+  shadows.bias = 0.005;
+  shadows.darkness = 0.1;
+  shadows.addShadowCaster(square);
+  const share = async (make) => {
+    const [without, all] = [await drawn(make(), false), await drawn(make(), true)];
+    return all.map((x, i) => x / without[i]);
+  };
+  const own = await share(() => lacquered.materialFrom(lacquer, { doubleSided: true, pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } }, scene));
+  const theirs = await share(() => {
+    const plain = new PBRMaterial('plain', scene);
+    return Object.assign(plain, { metallic: 0, roughness: 1, backFaceCulling: false });
+  });
+  scene.dispose();
+  return { own, theirs };
+}
+
+test("shadows fall on it as on Babylon.js's own materials", async () => {
+  const filters = { directional: ['FILTER_NONE', 'FILTER_PCF', 'FILTER_BLUREXPONENTIALSHADOWMAP', 'FILTER_PCSS'], spot: ['FILTER_PCF'], point: ['FILTER_NONE', 'FILTER_POISSONSAMPLING'] };
+  const cases = Object.entries(filters).flatMap(([kind, all]) => all.map((filter) => ({ kind, filter })));
+  cases.push({ kind: 'directional', filter: 'FILTER_PCF', others: 3 }, { kind: 'spot', filter: 'FILTER_PCF', rightHanded: false });
+  for (const each of cases) {
+    const what = JSON.stringify(each);
+    const { own, theirs } = await inPage(shares, each);
+    const dark = theirs.filter((x) => x < 0.3).length;
+    assert.ok(dark > 15 && theirs.filter((x) => x > 0.95).length > 400, `${what}: Babylon.js has ${dark} dark pixels`);
+    const far = own.filter((x, i) => !(Math.abs(x - theirs[i]) < 0.03)).length;
+    assert.ok(far === 0, `${what}: ${far} pixels are not as Babylon.js has them, which has ${dark} dark ones`);
+  }
+  const { own } = await inPage(shares, { kind: 'directional', filter: 'FILTER_PCF', receives: false });
+  assert.ok(own.every((x) => Math.abs(x - 1) < 1e-3), 'receiveShadows is false');
+});
+
 test('points and spots light as they do in the library, those that do not reach a mesh not', async () => {
   const at = await inPage(async () => {
     const results = [];

@@ -379,6 +379,136 @@ test('through glass the scene is seen, and no other glass', async () => {
   assert.deepEqual(at.visible, [true, true]);
 });
 
+/** What is left of a lamp's light over a wall behind a small square, by Lacquer's material and by three.js's own. */
+async function dimmed({ kind, type, receives = true, others = 0 }) {
+  const scene = new THREE.Scene();
+  const wall = quad();
+  const square = quad();
+  square.scale.setScalar(0.2);
+  square.position.set(0.05, 0.1, 0.5);
+  square.material = new THREE.MeshBasicMaterial({ side: THREE.DoubleSide, colorWrite: false, depthWrite: false });
+  square.castShadow = true;
+  wall.receiveShadow = receives;
+  const kinds = {
+    directional: () => new THREE.DirectionalLight(0xffffff, 2), spot: () => new THREE.SpotLight(0xffffff, 20, 0, 0.6, 0.5),
+    point: () => new THREE.PointLight(0xffffff, 20),
+  };
+  const light = kinds[kind]();
+  light.position.set(0.4, 0.3, 2);
+  light.castShadow = true;
+  light.shadow.mapSize.set(128, 128);
+  light.shadow.bias = -0.002;
+  light.shadow.normalBias = 0.02;
+  light.shadow.intensity = 0.9;
+  for (const side of ['left', 'right', 'top', 'bottom']) if (kind === 'directional') light.shadow.camera[side] = side === 'left' || side === 'bottom' ? -1 : 1;
+  Object.assign(light.shadow.camera, { near: 0.2, far: 5 });
+  // Lights without a shadow before it: the number of a shadow is not that of its light.
+  for (let i = 0; i < others; ++i) {
+    const dim = kinds[['directional', 'spot', 'point'][i % 3]]();
+    dim.intensity = 1e-6;
+    dim.position.set(0, 0, 2);
+    scene.add(dim);
+  }
+  scene.add(wall, square, light);
+  renderer.shadowMap.type = type;
+  const white = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } };
+  const share = (make) => {
+    const drawn = [false, true].map((enabled) => {
+      renderer.shadowMap.enabled = enabled;
+      wall.material = make();
+      const all = colours(scene, camera(), 32).filter((_, i) => i % 4 === 0);
+      wall.material.dispose();
+      return all;
+    });
+    return drawn[1].map((x, i) => x / drawn[0][i]);
+  };
+  const own = share(() => lacquered.materialFrom(lacquer, white, wall));
+  const theirs = share(() => new THREE.MeshStandardMaterial({ roughness: 1, metalness: 0 }));
+  renderer.shadowMap.enabled = false;
+  renderer.shadowMap.type = THREE.PCFShadowMap;
+  light.dispose();
+  return { own, theirs };
+}
+
+test("shadows fall on it as on three.js's own materials", async () => {
+  const { PCFShadowMap: pcf, BasicShadowMap: basic, VSMShadowMap: vsm } = await inPage(() => {
+    const { PCFShadowMap, BasicShadowMap, VSMShadowMap } = THREE;
+    return { PCFShadowMap, BasicShadowMap, VSMShadowMap };
+  });
+  const cases = ['directional', 'spot', 'point'].flatMap((kind) => [
+    { kind, type: pcf }, { kind, type: pcf, others: 4 }, { kind, type: basic }, ...(kind === 'point' ? [] : [{ kind, type: vsm }]),
+  ]);
+  for (const each of cases) {
+    const what = JSON.stringify(each);
+    const { own, theirs } = await inPage(dimmed, each);
+    const dark = theirs.filter((x) => x < 0.2).length;
+    assert.ok(dark > 20 && theirs.filter((x) => x > 0.95).length > 500, `${what}: three.js has ${dark} dark pixels`);
+    const far = own.filter((x, i) => Math.abs(x - theirs[i]) > 0.03).length;
+    assert.ok(far === 0, `${what}: ${far} pixels are not as three.js has them, which has ${dark} dark ones`);
+  }
+  const { own } = await inPage(dimmed, { kind: 'directional', type: pcf, receives: false });
+  assert.ok(own.every((x) => Math.abs(x - 1) < 1e-3), 'receiveShadow is false');
+});
+
+test('instances have their colours, times those of their vertices', async () => {
+  const at = await inPage(() => {
+    const white = { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } };
+    const { geometry } = quad();
+    const drawn = (mesh, json) => {
+      mesh.material = lacquered.materialFrom(lacquer, json, mesh);
+      const scene = new THREE.Scene();
+      scene.add(mesh, lamp());
+      return colours(scene, camera(), 1).slice(0, 3);
+    };
+    const tinted = () => {
+      const mesh = new THREE.InstancedMesh(geometry, undefined, 1);
+      mesh.setMatrixAt(0, new THREE.Matrix4());
+      mesh.setColorAt(0, new THREE.Color().setRGB(0.2, 0.5, 1));
+      return mesh;
+    };
+    const based = (...color) => drawn(quad(), { pbrMetallicRoughness: { ...white.pbrMetallicRoughness, baseColorFactor: [...color, 1] } });
+    const own = drawn(tinted(), white);
+    geometry.setAttribute('color', new THREE.Float32BufferAttribute(new Array(12).fill(0.5), 3));
+    return { own, expected: based(0.2, 0.5, 1), both: drawn(tinted(), white), half: based(0.1, 0.25, 0.5) };
+  });
+  at.own.forEach((x, i) => assert.ok(Math.abs(x - at.expected[i]) < 1e-3, `${at.own}, not ${at.expected}`));
+  at.both.forEach((x, i) => assert.ok(Math.abs(x - at.half[i]) < 1e-3, `${at.both}, not ${at.half}`));
+  assert.ok(at.own[2] > 2 * at.own[0], `${at.own}`);
+});
+
+test("clipping planes cut it as they cut three.js's own materials", async () => {
+  const at = await inPage(() => {
+    const glowing = { emissiveFactor: [1, 1, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] } };
+    const mesh = quad();
+    mesh.position.set(0.1, 0.05, 0);
+    const scene = new THREE.Scene();
+    scene.add(mesh);
+    const planes = [new THREE.Plane(new THREE.Vector3(1, 0.3, 0).normalize(), 0.1), new THREE.Plane(new THREE.Vector3(0, -1, 0), 0.3)];
+    const seen = (material, clipIntersection) => {
+      mesh.material = material;
+      Object.assign(material, { clippingPlanes: planes, clipIntersection });
+      renderer.localClippingEnabled = true;
+      const drawn = colours(scene, camera(), 32).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+      renderer.localClippingEnabled = false;
+      return drawn;
+    };
+    const both = (intersection) => [lacquered.materialFrom(lacquer, glowing, mesh), new THREE.MeshBasicMaterial()].map((material) => seen(material, intersection));
+    const all = [both(false), both(true)];
+    renderer.clippingPlanes = planes.slice(1);
+    all.push([lacquered.materialFrom(lacquer, glowing, mesh), new THREE.MeshBasicMaterial()].map((material) => {
+      mesh.material = material;
+      return colours(scene, camera(), 32).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+    }));
+    renderer.clippingPlanes = [];
+    return all;
+  });
+  at.forEach(([own, theirs], i) => {
+    const sum = theirs.reduce((all, x) => all + x, 0);
+    assert.ok(sum > 100 && sum < 1000, `${i}: ${sum}`);
+    assert.ok(own.filter((x, at) => x !== theirs[at]).length <= 2, `${i}: not as the ${sum} pixels that three.js draws`);
+  });
+});
+
 test('two renderers draw one scene, each as it is now', async () => {
   const [first, second, changed] = await inPage(() => {
     const other = new THREE.WebGLRenderer();

@@ -31,9 +31,12 @@ function lightOf(light: Light): PunctualLight | null {
 const kPoint = { area_x: [0, 0, 0], area_y: [0, 0, 0], area_radiance: [0, 0, 0], disk: 0 };
 const kIdle: Values = { ...kPoint, ...lightValues({ type: 'point', intensity: 0 }) };
 
+/** Those that have elements, in their order. */
+export const drawnLights = (lights: Light[]): Light[] => lights.filter((light) => light.isEnabled() && lightOf(light) !== null);
+
 /** Elements of the block, as many as it has. Those beyond are left out. */
 export function lightsOf(lights: Light[], size: number): { elements: Values[]; count: number } {
-  const known = lights.filter((light) => light.isEnabled()).map(lightOf).filter((light) => light !== null);
+  const known = drawnLights(lights).map((light) => lightOf(light)!);
   const elements: Values[] = known.slice(0, size).map((light) => ({ ...kPoint, ...lightValues(light) }));
   const { length: count } = elements;
   while (elements.length < size) elements.push(kIdle);

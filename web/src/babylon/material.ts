@@ -24,7 +24,8 @@ import type { Attribute, GraphTexture, Message, Options, Parameter, Values } fro
 import { normalMatrix } from '../webgpu.js';
 import { behindOf } from './behind.js';
 import { surroundingsOf, tablesOf, type Environment } from './environment.js';
-import { lightsOf } from './lights.js';
+import { drawnLights, lightsOf } from './lights.js';
+import { bindShadows, castingOn, prepareShadows } from './shadows.js';
 import { babylonText, kindOf, kKinds, kOptional, kUniforms } from './text.js';
 
 /** The attributes of a mesh that its shader may use. Skins, morph targets and instances are Babylon.js's matter. */
@@ -136,8 +137,8 @@ export interface MaterialOptions {
 }
 
 /** Draws a graph on any mesh. It has the lights, the fog and the image processing of its scene, skins, morph targets, instances and
- * thin instances; the surroundings are those of setEnvironment(), or the scene's `environmentTexture`. Shadows fall from it, but not
- * on it. */
+ * thin instances; the surroundings are those of setEnvironment(), or the scene's `environmentTexture`. Shadows fall from it and on
+ * it. */
 export class LacquerMaterial extends ShaderMaterial {
   readonly isLacquerMaterial = true;
   /** Instead of the scene's. */
@@ -243,12 +244,14 @@ export class LacquerMaterial extends ShaderMaterial {
     const samplers = made.interface.textures.map(({ name }) => name);
     ImageProcessingConfiguration.PrepareUniforms(uniforms, colors);
     ImageProcessingConfiguration.PrepareSamplers(samplers, colors);
+    const uniformBuffers = this.blocksOf(made).names;
+    const shadows = mesh ? prepareShadows(mesh, this.castingOn(mesh, made), { uniforms, samplers, uniformBuffers }) : [];
     const on = Object.entries(colors).filter(([, value]) => value !== false && value !== undefined);
     Object.assign(this.options, {
-      attributes: made.attributes, uniforms, samplers, uniformBuffers: this.blocksOf(made).names,
+      attributes: made.attributes, uniforms, samplers, uniformBuffers,
       defines: [
         `LACQUER_${made.shader.id.replace(/\W/g, '_')}`, ...made.defines,
-        ...on.map(([name, value]) => (value === true ? name : `${name} ${value}`)),
+        ...on.map(([name, value]) => (value === true ? name : `${name} ${value}`)), ...shadows,
       ],
     });
     this.shaderPath = made.source;
@@ -274,6 +277,7 @@ export class LacquerMaterial extends ShaderMaterial {
     super.bind(world, mesh, effectOverride, subMesh);
     this.fillBlocks(blocks, mesh, around.levels, around.intensity);
     blocks.bind(effect);
+    bindShadows(scene, this.castingOn(mesh, made), effect);
     effect.setMatrix('view', scene.getViewMatrix());
     effect.setFloat('lacquer_hand', scene.useRightHandedSystem ? 1 : -1);
     effect.setFloat('lacquer_visibility', mesh.visibility * this.alpha);
@@ -291,6 +295,11 @@ export class LacquerMaterial extends ShaderMaterial {
     super.dispose(false, forceDisposeTextures, notBoundToMesh);
     // Of each it has one share, whether it is still on a mesh or not.
     if (forceDisposeEffect) this.effects.splice(0).forEach((effect) => effect.dispose());
+  }
+
+  private castingOn(mesh: AbstractMesh, made: Made): Map<number, Light> {
+    if (!mesh.receiveShadows) return new Map();
+    return castingOn(mesh, drawnLights(mesh.lightSources), made.interface.uniforms.find(({ block }) => block === 'Lights')?.array ?? 0);
   }
 
   private blocksOf(made: Made): Blocks {

@@ -2,6 +2,7 @@
 // preprocessor reads all lines.
 import { asFunction, kBlock, kInput, semanticOf } from '../renderers/text.js';
 import type { Attribute, Interface } from '../types.js';
+import { dimmed, shadowLines } from './shadows.js';
 
 /** The kinds of Babylon.js's vertex buffers for glTF's attributes. `moved`: the define under which morph targets move it, and the
  * variable that they then move. */
@@ -41,6 +42,9 @@ const asStruct = (block: string, members: string, instance: string) => `struct $
 const object = (essl: string): string => essl.replace(kBlock, (all, block, members, instance) => (block === 'Object' ? asStruct(block, members, instance) : all));
 const kNormals = 'mat4(transpose(inverse(mat3(finalWorld))))';
 
+/** Elements of the block Lights. */
+export const lightsIn = (shader: Interface): number => shader.uniforms.find(({ block }) => block === 'Lights')?.array ?? 1;
+
 function vertexText(essl: string, shader: Interface): string {
   const attributes = ['attribute vec3 position;'];
   const moved = ['vec3 positionUpdated = position;'];
@@ -54,14 +58,15 @@ function vertexText(essl: string, shader: Interface): string {
     if (semantic === 'TANGENT') fill.push(`${variable}.w *= lacquer_hand;`);
     return `${type} ${variable};`;
   });
+  const { vertex: shadows } = shadowLines(lightsIn(shader));
   return [
-    'precision highp float;', ...attributes, ...kDeclarations, text, 'void main() {', ...moved, ...kMoving, ...fill,
+    'precision highp float;', ...attributes, ...kDeclarations, ...shadows.before, text, 'void main() {', ...moved, ...kMoving, ...fill,
     ...(text.includes('ObjectBlock object;') ? [
       'object.model = finalWorld;', 'object.normal_matrix = normalMatrix;',
       '#ifdef INSTANCES', `object.normal_matrix = ${kNormals};`, '#endif',
       '#if NUM_BONE_INFLUENCERS>0', `object.normal_matrix = ${kNormals};`, '#endif',
     ] : []),
-    'surface();', 'vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);', '#include<fogVertex>', '}', '',
+    'surface();', 'vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);', ...shadows.fill, '#include<fogVertex>', '}', '',
   ].join('\n');
 }
 
@@ -79,16 +84,17 @@ const kAround = [
 function fragmentText(essl: string, shader: Interface): string {
   const cubes = shader.textures.filter(({ type }) => type === 'samplerCube').map(({ name }) => name);
   const lookup = new RegExp(`\\btextureLod\\((?=(?:${cubes.join('|')}), )`, 'g');
-  const text = object(asFunction(essl)).replace(cubes.length ? lookup : /$^/, 'lacquer_around(');
+  const { fragment: shadows } = shadowLines(lightsIn(shader));
+  const text = dimmed(object(asFunction(essl))).replace(cubes.length ? lookup : /$^/, 'lacquer_around(');
   const [color] = shader.outputs as { name: string }[];
   const start = text.search(/^(?:struct|layout|uniform|in|void|const) /m);
   return [
-    text.slice(0, start), ...kAround, text.slice(start),
+    text.slice(0, start), ...kAround, ...shadows.before, text.slice(start),
     ...(text.includes('ObjectBlock object;') ? ['uniform mat4 world;', 'uniform mat4 normalMatrix;'] : []),
     'uniform float lacquer_visibility;',
     '#define PBR', '#include<helperFunctions>', '#include<imageProcessingDeclaration>', '#include<imageProcessingFunctions>',
-    '#include<fogFragmentDeclaration>',
-    'void main() {',
+    '#include<fogFragmentDeclaration>', ...shadows.functions,
+    'void main() {', ...shadows.fill,
     ...(text.includes('ObjectBlock object;') ? ['object.model = world;', 'object.normal_matrix = normalMatrix;'] : []),
     'surface();', `vec4 color = out_${color.name};`, '#include<fogFragment>',
     '#ifndef IMAGEPROCESSINGPOSTPROCESS', 'color.rgb = max(color.rgb, 0.0);', 'color = applyImageProcessing(color);', '#endif',

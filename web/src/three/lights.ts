@@ -5,6 +5,7 @@ import {
 } from 'three';
 import { lightValues, type AreaLight, type PunctualLight } from '../webgpu.js';
 import type { Values } from '../types.js';
+import { kShadows } from './shadows.js';
 
 const at = new Vector3();
 const to = new Vector3();
@@ -46,6 +47,8 @@ function lightOf(light: Light, areas: boolean): PunctualLight | AreaLight | null
 export interface Lights {
   elements: Values[];
   count: number;
+  /** Of three.js's shadows, by the uniforms that have them, the elements that they fall from. */
+  shadows: Record<string, number[]>;
 }
 
 interface Seen {
@@ -64,6 +67,22 @@ function visible(from: Object3D, camera: Camera, lights: Light[]): void {
   for (const child of from.children) visible(child, camera, lights);
 }
 
+type Casting = Light & { map?: unknown };
+/** As three.js orders them: the shadows of a kind are numbered in this order. */
+const kCastingFirst = (a: Casting, b: Casting): number =>
+  (b.castShadow ? 2 : 0) - (a.castShadow ? 2 : 0) + (b.map ? 1 : 0) - (a.map ? 1 : 0);
+
+/** The element of each shadow; of a light that has none, the one behind them all. */
+function shadowsOf(lights: Light[], drawn: Light[], size: number): Record<string, number[]> {
+  const casting = [...lights].sort(kCastingFirst).filter(({ castShadow }) => castShadow);
+  return Object.fromEntries(Object.entries(kShadows).map(([uniform, { light: kind }]) => {
+    const elements = casting.filter((light) => (light as unknown as Record<string, unknown>)[kind]).map((light) => drawn.indexOf(light));
+    return [uniform, padded(elements.map((element) => (element < 0 || element >= size ? size : element)), size)];
+  }));
+}
+/** A uniform's array has one length for all scenes. */
+const padded = (elements: number[], size: number): number[] => Array.from({ length: size }, (_, i) => elements[i] ?? size);
+
 /** The first lights that a camera's layers see; those beyond the block's size are left out, which is said once. `areas`: the
  * template has lights that have an area. */
 export function lightsOf(renderer: WebGLRenderer, scene: Scene, camera: Camera, size: number, areas: boolean): Lights {
@@ -77,10 +96,11 @@ export function lightsOf(renderer: WebGLRenderer, scene: Scene, camera: Camera, 
     visible(scene, camera, known.lights);
     scenes.set(scene, known);
   }
-  const lights = known.lights.map((light) => lightOf(light, areas)).filter((light) => light !== null);
+  const found = known.lights.map((light) => ({ light, as: lightOf(light, areas) })).filter(({ as }) => as !== null);
+  const lights = found.map(({ as }) => as!);
   if (lights.length > size && most <= size) console.warn(`lacquer: the scene has ${lights.length} lights, of which the first ${size} are drawn`);
   const elements: Values[] = lights.slice(0, size).map((light) => ({ ...kPoint, ...lightValues(light) }));
   const { length: count } = elements;
   while (elements.length < size) elements.push(kIdle);
-  return { elements, count };
+  return { elements, count, shadows: shadowsOf(known.lights, found.map(({ light }) => light), size) };
 }

@@ -2,7 +2,7 @@
 import {
   ClampToEdgeWrapping, DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, LinearFilter, Material, Matrix4, MirroredRepeatWrapping,
   NearestFilter, Quaternion, RepeatWrapping, RGBAFormat, ShaderMaterial, SRGBColorSpace, UniformsLib, UniformsUtils, Vector2, type BufferAttribute,
-  type BufferGeometry, type Camera, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
+  type BufferGeometry, type Camera, type InstancedMesh, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
 } from 'three';
 import type { Graph, Lacquer } from '../index.js';
 import type { Attribute, Field, GraphTexture, Message, Options, Parameter, Values } from '../types.js';
@@ -11,6 +11,7 @@ import { changedNumbers, clockValues, esslOf, type Essl } from '../renderers/sha
 import { environmentIn, tablesOf, type Environment } from './environment.js';
 import { lightsOf } from './lights.js';
 import { sceneBehind } from './behind.js';
+import { kShadows } from './shadows.js';
 import { instancesOf, threeText } from './text.js';
 
 /** The attributes of a mesh that its shader may use. */
@@ -21,6 +22,7 @@ export function attributesOf(mesh: Mesh): Attribute[] {
     ['uv2', 'TEXCOORD_2'], ['uv3', 'TEXCOORD_3'],
   ];
   const has = named.filter(([name]) => attributes[name]).map(([, attribute]) => attribute);
+  if ((mesh as InstancedMesh).instanceColor && !attributes.color) has.push('COLOR_0');
   if ((mesh as SkinnedMesh).isSkinnedMesh) has.push('JOINTS_0', ...(attributes.joints_1 ? ['JOINTS_1' as const] : []));
   if (Object.keys(morphAttributes).length > 0) has.push('MORPH_TARGETS');
   return has;
@@ -81,7 +83,7 @@ export interface MaterialOptions {
 }
 
 /** Draws a graph. It has the lights, the fog, the tone mapping and the colour space of the renderer and its scene, skins, morph
- * targets and instances; the surroundings are those of setEnvironment(). Shadows fall from it, but not on it. */
+ * targets, instances and clipping planes; the surroundings are those of setEnvironment(). Shadows fall from it and on it. */
 export class LacquerMaterial extends ShaderMaterial {
   readonly isLacquerMaterial = true;
   /** Instead of the scene's. */
@@ -104,7 +106,7 @@ export class LacquerMaterial extends ShaderMaterial {
     { textures = {}, options = {}, messages = [] }: MaterialOptions = {},
     made = make(graph, options, messages),
   ) {
-    super({ glslVersion: GLSL3, vertexShader: made.text.vertex, fragmentShader: made.text.fragment, fog: true });
+    super({ glslVersion: GLSL3, vertexShader: made.text.vertex, fragmentShader: made.text.fragment, fog: true, clipping: true });
     this.type = 'LacquerMaterial';
     this.made = made;
     this.name = made.shader.id;
@@ -115,9 +117,17 @@ export class LacquerMaterial extends ShaderMaterial {
     for (const { name, content } of made.interface.textures) this.uniforms[name] = { value: textures[name] ?? standIn(content) };
     for (const [name, table] of Object.entries(tablesOf(lacquer))) if (this.uniforms[name]) this.uniforms[name].value = table;
     Object.assign(this.uniforms, UniformsUtils.clone(UniformsLib.fog));
+    if (made.instances.has('Lights')) this.takeShadows();
     this.looksThrough = made.instances.has('SeeThrough');
     this.set({});
     this.addEventListener('dispose', () => this.textures.forEach((each) => each.dispose()));
+  }
+
+  /** Has three.js give it what its own lit materials have. */
+  private takeShadows(): void {
+    this.lights = true;
+    Object.assign(this.uniforms, UniformsUtils.clone(UniformsLib.lights));
+    for (const uniform of Object.keys(kShadows)) this.uniforms[uniform] = { value: [] };
   }
 
   /** The numbers that set() takes. */
@@ -177,8 +187,9 @@ export class LacquerMaterial extends ShaderMaterial {
     const lights = this.made.instances.get('Lights');
     const { array: size = 0, fields = [] } = this.made.interface.uniforms.find(({ block }) => block === 'Lights') ?? {};
     const areas = fields.some(({ name }) => name === 'area_radiance');
-    const { elements, count } = lights ? lightsOf(renderer, scene, camera, size, areas) : { elements: [], count: 0 };
+    const { elements, count, shadows } = lights ? lightsOf(renderer, scene, camera, size, areas) : { elements: [], count: 0, shadows: {} };
     if (lights) this.uniforms[lights].value = elements;
+    for (const [uniform, from] of Object.entries(shadows)) this.uniforms[uniform].value = from;
     const environment = this.environment ?? environmentIn(scene);
     for (const [name, texture] of Object.entries(environment.textures)) if (this.uniforms[name]) this.uniforms[name].value = texture;
     const { environmentIntensity = 1, environmentRotation } = scene;

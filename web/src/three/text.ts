@@ -2,6 +2,7 @@
 // blocks, and has a main() that ends with what the renderer does to colours.
 import { asFunction, kBlock, kInput, semanticOf } from '../renderers/text.js';
 import type { Interface } from '../types.js';
+import { fragmentShadows, shadowed, vertexShadows } from './shadows.js';
 
 /** The names that three.js's geometries have for glTF's attributes. `under`: the define under which three.js declares it; an
  * empty one: always. */
@@ -53,10 +54,11 @@ class Rewriting {
     return `${once}${type} ${variable};`;
   };
 
-  /** Which an application may have three.js declare by `vertexColors`. */
+  /** Which an application may have three.js declare by `vertexColors`; where a mesh has none, it is white. */
   private color(type: string, variable: string): string {
     const without = '#if defined(USE_COLOR) && !defined(USE_COLOR_ALPHA)';
     this.fill.push(without, `${variable} = vec4(color, 1.0);`, '#else', `${variable} = color;`, '#endif');
+    this.fill.push('#ifdef USE_INSTANCING_COLOR', `${variable}.rgb *= instanceColor;`, '#endif');
     return `#if !defined(USE_COLOR) && !defined(USE_COLOR_ALPHA)\nin ${type} color;\n#endif\n${type} ${variable};`;
   }
 
@@ -85,17 +87,35 @@ export function instancesOf(essl: string): Map<string, string> {
   }));
 }
 
-/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, fog, tone mapping and colour spaces are added. */
+/** The place of a vertex, kept for three.js's pieces: where no line says it, of what the line makes of it. */
+function world(text: string): { text: string; fill: string[] } {
+  const told = text.replace(/^( *)gl_Position = frame\.view_projection \* (.+);$/m, '$&\n$1lacquer_world = $2;');
+  return { text: told, fill: told === text ? ['    lacquer_world = inverse(projectionMatrix * viewMatrix) * gl_Position;'] : [] };
+}
+
+/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, shadows, clipping, fog, tone mapping and colour spaces are
+ * added. */
 export function threeText(essl: string, stage: 'vertex' | 'fragment', shader: Interface): string {
   const vertex = stage === 'vertex';
   const to = new Rewriting(vertex, shader);
+  const lights = shader.uniforms.find(({ block }) => block === 'Lights')?.array ?? 0;
+  const shadows = lights === 0 ? { before: [], fill: [] } : vertex ? vertexShadows(essl) : fragmentShadows(lights);
   const bare = asFunction(essl);
   const text = (vertex ? bare.replace(kInput, to.input) : bare).replace(kBlock, to.block);
-  const main = ['void main() {', ...to.fill.map((line) => (line.startsWith('#') ? line : `    ${line}`)), '    surface();'];
+  const main = ['void main() {', ...to.fill.map((line) => (line.startsWith('#') ? line : `    ${line}`))];
   if (vertex) {
-    return ['#include <fog_pars_vertex>', text, ...main, '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '}', ''].join('\n');
+    const placed = world(text);
+    return [
+      ...['fog', 'clipping_planes'].map((chunk) => `#include <${chunk}_pars_vertex>`), 'vec4 lacquer_world;', ...shadows.before, placed.text,
+      ...main, '    surface();', ...placed.fill, '    vec4 mvPosition = viewMatrix * lacquer_world;', ...shadows.fill,
+      '#include <clipping_planes_vertex>', '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '}', '',
+    ].join('\n');
   }
   const ends = ['tonemapping', 'colorspace', 'fog', 'premultiplied_alpha'].map((chunk) => `#include <${chunk}_fragment>`);
   const [color] = shader.outputs as { name: string }[];
-  return ['#include <fog_pars_fragment>', text, `#define gl_FragColor out_${color.name}`, ...main, ...ends, '}', ''].join('\n');
+  return [
+    ...['fog', 'clipping_planes'].map((chunk) => `#include <${chunk}_pars_fragment>`), ...shadows.before, lights === 0 ? text : shadowed(text),
+    `#define gl_FragColor out_${color.name}`, ...main, '    vec4 diffuseColor = vec4(1.0);', '#include <clipping_planes_fragment>', ...shadows.fill,
+    '    surface();', '    gl_FragColor.a *= diffuseColor.a; // what a plane covers of the pixel', ...ends, '}', '',
+  ].join('\n');
 }
