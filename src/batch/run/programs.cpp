@@ -267,17 +267,23 @@ Diagnostics Programs::about(size_t made) const {
 void Programs::close() {
   KeyBuilder digest;
   if (setting_.options.fallback) digest.text("fallback");
-  std::set<Group*> done;
+  std::map<Group*, size_t> done;
   for (const auto& [structure, member] : members_) {
     const std::shared_ptr<Group>& group = member.group;
-    digest.key(structure);
-    if (!done.insert(group.get()).second) continue;
+    const auto [at, fresh] = done.emplace(group.get(), done.size());
+    digest.key(structure).number(static_cast<uint64_t>(at->second)).number(member.looks_through);
+    if (!fresh) continue;
     // In the order of the texts: keys would bring in the versions of the tools.
     std::vector<std::pair<std::string, Key>> order;
     for (const auto& [key, graph] : group->graphs) order.emplace_back(graph::toJson(graph), key);
     std::sort(order.begin(), order.end());
+    for (const uint16_t extension : group->lift.extensions) digest.number(extension);
+    for (const std::string& term : group->lift.live) digest.text(term);
     std::vector<const graph::Graph*> members;
-    for (const auto& [text, key] : order) members.push_back(&group->graphs.at(key));
+    for (const auto& [text, key] : order) {
+      digest.text(text);
+      members.push_back(&group->graphs.at(key));
+    }
     if (members.empty()) continue;
     Result<programs::United> united = programs::unite(members, setting_.library);
     if (!united) continue;  // they keep their programs
