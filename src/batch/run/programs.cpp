@@ -226,14 +226,15 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
   if (place == group.places.end()) return {};
   const programs::Fill& fill = group.united.fills[place->second];
   own.graph = programs::instance(group.united, place->second, more);
+  // What a graph brings, a surface's of MaterialX too, comes from no property.
   own.numbers.assign(own.graph.parameters.size(), std::nullopt);
   for (size_t i = 0; i < own.numbers.size(); ++i) {
     const auto at = fill.numbers[i].own ? more.findParameter(own.graph.parameters[i].name) : std::nullopt;
-    if (at && material != nullptr) own.numbers[i] = origins.parameters[*at];
+    if (at && *at < origins.parameters.size()) own.numbers[i] = origins.parameters[*at];
   }
   own.textures.assign(own.graph.textures.size(), std::nullopt);
   for (size_t i = 0; i < own.textures.size(); ++i) {
-    for (size_t k = 0; material != nullptr && fill.textures[i].own && k < more.textures.size(); ++k) {
+    for (size_t k = 0; fill.textures[i].own && k < origins.textures.size(); ++k) {
       if (more.textures[k].name == own.graph.textures[i].name) own.textures[i] = origins.textures[k];
     }
   }
