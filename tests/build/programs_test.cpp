@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "processes.h"
 #include "random_gltf.h"
@@ -146,10 +148,89 @@ TEST_F(ProgramsRun, TheDriverIsAskedOnce) {
   std::string first, second;
   ASSERT_EQ(gen("out", more, &first), 0) << first;
   if (first.find("\ndriver ") == std::string::npos) GTEST_SKIP() << "NOT TESTED: there is no driver to ask";
-  writeText(folder_ / files_[0], readText(folder_ / files_[0]) + "\n");
-  ASSERT_EQ(gen("out", more, &second), 0) << second;
+  // All count twice as much: what is decided is decided anew, and the same.
+  Json weights;
+  for (const std::string& file : files_) {
+    for (int i = 0; i < 4; ++i) weights["weights"].push_back({{"file", file}, {"material", i}, {"share", 2}});
+  }
+  writeText(folder_ / "twice.json", weights.dump());
+  Words again = more;
+  again.insert(again.end(), {"--weights", "twice.json"});
+  ASSERT_EQ(gen("out", again, &second), 0) << second;
   EXPECT_NE(second.find("\nprograms "), std::string::npos) << second;
   EXPECT_EQ(second.find("\ndriver "), std::string::npos) << second;
+}
+
+bool measures(const std::string& output) { return output.find("\nprograms ") != std::string::npos; }
+
+/// What an edit leaves as it was comes from the cache, and never shows: each folder is that of a run from
+/// nothing.
+TEST_F(ProgramsRun, EditsLeaveWhatARunFromNothingMakes) {
+  Json file = Json::parse(readText(folder_ / files_[1]));
+  const Json before = file;
+  const auto all = [&]() -> Json& { return file["materials"]; };
+  const std::vector<std::tuple<std::string, bool, std::function<void()>>> edits = {
+      {"nothing", false, [] {}},
+      {"a number", false, [&] { all()[0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.4375; }},
+      {"a number that removes a term", true, [&] { all()[1]["pbrMetallicRoughness"]["metallicFactor"] = 0; }},
+      {"a texture more", true,
+       [&] {
+         all()[2]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 1}};
+       }},
+      {"the texture away", true, [&] { all()[2]["pbrMetallicRoughness"].erase("baseColorTexture"); }},
+      {"a material more", true, [&] { all().push_back(all()[0]); }},
+      {"another order", false, [&] { std::reverse(all().begin(), all().end()); }},
+      {"a material away", true, [&] { all().erase(1); }},
+      {"all as it was", false, [&] { file = before; }}};
+  for (const bool fallback : {false, true}) {
+    file = before;
+    Words more{"--model-costs", "--time", "--pipelines", "pipelines.json"};
+    if (fallback)
+      more.push_back("--fallback");
+    else
+      more.insert(more.end(), {"--programs", "3", "--programs-report", "curve.json"});
+    Words kept = more;
+    kept.insert(kept.end(), {"--cache", "cache"});
+    writeText(folder_ / files_[1], file.dump());
+    ASSERT_EQ(gen("out", kept), 0);
+    for (const auto& [name, decides, edit] : edits) {
+      edit();
+      writeText(folder_ / files_[1], file.dump());
+      std::string output;
+      ASSERT_EQ(gen("out", kept, &output), 0) << name << output;
+      if (!decides) {
+        EXPECT_FALSE(measures(output)) << name << output;
+      }
+      const std::string pipelines = readText(folder_ / "pipelines.json");
+      const std::string curve = fallback ? "" : readText(folder_ / "curve.json");
+      fs::remove_all(folder_ / "fresh");
+      ASSERT_EQ(gen("fresh", more), 0);
+      EXPECT_EQ(differences(folder_ / "fresh", folder_ / "out"), "") << name;
+      EXPECT_EQ(pipelines, readText(folder_ / "pipelines.json")) << name;
+      if (!fallback) {
+        EXPECT_EQ(curve, readText(folder_ / "curve.json")) << name;
+      }
+    }
+  }
+}
+
+/// A cache that lies is worth nothing, and does no harm.
+TEST_F(ProgramsRun, WhatIsDamagedIsDecidedAnew) {
+  const Words more{"--programs", "3", "--model-costs", "--cache", "cache", "--time"};
+  ASSERT_EQ(gen("fresh", {"--programs", "3", "--model-costs"}), 0);
+  ASSERT_EQ(gen("out", more), 0);
+  for (const auto& [name, state] : filesBelow(folder_ / "cache")) {
+    std::string bytes = readText(folder_ / "cache" / name);
+    bytes[bytes.size() - 1] ^= 1;
+    writeText(folder_ / "cache" / name, bytes);
+  }
+  std::string output;
+  ASSERT_EQ(gen("out", more, &output), 0) << output;
+  EXPECT_TRUE(measures(output)) << output;
+  EXPECT_EQ(differences(folder_ / "fresh", folder_ / "out"), "");
+  ASSERT_EQ(gen("out", more, &output), 0) << output;
+  EXPECT_FALSE(measures(output)) << output;
+  EXPECT_EQ(differences(folder_ / "fresh", folder_ / "out"), "");
 }
 
 TEST_F(ProgramsRun, WeightsSayWhatMayCostMore) {

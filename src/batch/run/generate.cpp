@@ -109,7 +109,11 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   const Scratch scratch(folder);
   const Strings earlier = shard ? Strings() : listedShaders(path);
   ReplacingFile written_to(path, {shard ? nullptr : &scratch, options.sync});
-  manifest::Writer manifest([&](std::string_view text) { written_to.append(text); });
+  OutputKey content;
+  manifest::Writer manifest([&](std::string_view text) {
+    written_to.append(text);
+    if (receipt) content.append(text);
+  });
   Pipelines pipelines;
   run.read(inputs.files, inputs.kind, inputs.materials, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
@@ -124,15 +128,18 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     manifest.finish();
     const Result<bool> written = written_to.finish();
     run.wrote(written);
+    if (receipt) receipt->wrote(path, content.finish());
     if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
   }
-  run.writeProgramsReport();
-  if (!options.pipelines.empty() && !shard)
-    run.wrote(writeFile(options.pipelines, pipelines.text(), {nullptr, options.sync}));
+  Receipt* const notes = receipt ? &*receipt : nullptr;
+  run.writeProgramsReport(notes);
+  if (!options.pipelines.empty() && !shard) run.write(options.pipelines, pipelines.text(), notes);
   if (!options.depfile.empty()) {
     depfile = depfileText(path, run.inputs());  // with what the inputs include
-    run.wrote(depfile ? writeFile(options.depfile, *depfile, {nullptr, options.sync})
-                      : Result<bool>(tl::make_unexpected(depfile.error())));
+    if (depfile)
+      run.write(options.depfile, *depfile, notes);
+    else
+      run.wrote(tl::make_unexpected(depfile.error()));
   }
   if (receipt) run.keep(*receipt);
   return run.finish();

@@ -260,6 +260,7 @@ std::vector<std::optional<double>> ProgramCosts::cyclesOf(const std::vector<Resu
   const StageTimer timer(setting_.times, StageOfRun::Driver);
   const std::vector<cost::Outcome> outcomes = measureSubjects(subjects, driver_);
   for (size_t i = 0; i < outcomes.size(); ++i) {
+    failed_ |= !outcomes[i].statistics.has_value();
     if (!outcomes[i].statistics) continue;
     Told said{outcomes[i].statistics->inverse_throughput, driver_};
     all[places[i].first] = static_cast<double>(said.cycles);

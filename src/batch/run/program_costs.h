@@ -37,6 +37,8 @@ public:
   /// Costs are the driver's.
   bool measured() const { return by_driver_; }
   const std::string& driver() const { return driver_; }
+  /// A driver had no answer to a question: it may have one another time.
+  bool failed() const { return failed_; }
 
 private:
   std::optional<double> told(const std::optional<Key>& key);
@@ -50,6 +52,7 @@ private:
   const std::vector<OwnProgram>& all_;
   bool by_driver_ = false;
   bool no_driver_ = false;
+  bool failed_ = false;
   std::string driver_;
   std::map<std::string, uint32_t, std::less<>> features_;
   std::map<uint32_t, programs::Program> alone_;  ///< by item

@@ -58,16 +58,12 @@ Domain domainOf(const OwnProgram& program) { return {lightsOf(program), program.
 
 std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
                           ProgramCosts& costs) {
-  std::map<std::string_view, std::vector<double>> weights;
-  for (const ProgramUse& use : uses) weights[use.shader].push_back(use.weight);
+  std::map<std::string, double> weights = weightsByShader(uses);
   std::map<Domain, uint32_t> domains;
   std::vector<Item> items;
   std::vector<Places> alone;
   for (uint32_t i = 0; i < all.size(); ++i) {
-    Item item{all[i].shader, 0, {}, 0};
-    std::vector<double>& shares = weights[all[i].shader];
-    std::sort(shares.begin(), shares.end());  // a sum in the order of the files would be rounded by it
-    for (const double share : shares) item.weight += share;
+    Item item{all[i].shader, weights[all[i].shader], {}, 0};
     item.domain = domains.emplace(domainOf(all[i]), static_cast<uint32_t>(domains.size())).first->second;
     items.push_back(std::move(item));
     alone.push_back({i});
@@ -121,42 +117,69 @@ programs::ModelError errorOf(const std::vector<Item>& items, const programs::Mer
 }  // namespace
 
 Programs::Programs(const std::vector<const Structure*>& structures, const Examples& examples,
-                   const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting)
+                   const KnownShapes* shapes, const std::vector<ProgramUse>& uses, size_t materials,
+                   const Setting& setting)
     : setting_(setting) {
-  const Options& options = setting.options;
-  const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting);
+  std::optional<Key> key;
+  std::optional<Divided> kept;
+  if (setting.cache != nullptr) {
+    key = dividedKey(structures, examples, shapes, uses, setting);
+    const StageTimer timer(setting.times, StageOfRun::Cache);
+    if (const std::optional<std::string> bytes = key ? setting.cache->get(*key) : std::nullopt)
+      kept = dividedFrom(*bytes, structures, setting);
+  }
+  if (kept)
+    divided_ = std::move(*kept);
+  else
+    decide(structures, examples, uses, key);
+  divided_.curve.materials = materials;
+  std::map<Key, const Structure*> known;
+  for (const Structure* structure : structures) known.emplace(structure->key, structure);
+  for (const SharedProgram& shared : divided_.shared) {
+    const auto group = std::make_shared<Group>();
+    group->lift = shared.lift;
+    for (const Key& one : shared.structures) members_[one] = {group, known.at(one)->looks_through};
+  }
+}
+
+void Programs::decide(const std::vector<const Structure*>& structures, const Examples& examples,
+                      const std::vector<ProgramUse>& uses, const std::optional<Key>& key) {
+  const Options& options = setting_.options;
+  const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting_);
   std::set<std::map<std::string, int>> lights;
   std::set<std::vector<std::string>> vertices;
   for (const OwnProgram& one : all) {
     lights.insert(lightsOf(one));
     vertices.insert(one.graphs[0].attributes);
   }
-  light_sets_ = lights.size();
-  vertex_sets_ = vertices.size();
-  ProgramCosts costs(setting, all, options.programs_model || options.fallback);
-  if (!options.fallback) {
-    divide(all, uses, materials, costs);
-    return;
+  divided_.light_sets = lights.size();
+  divided_.vertex_sets = vertices.size();
+  ProgramCosts costs(setting_, all, options.programs_model || options.fallback);
+  if (options.fallback) {
+    divided_.fallbacks = fallbacksOf(all, costs, setting_);
+    share(all, divided_.fallbacks.groups, costs);
+  } else {
+    divide(all, uses, costs);
   }
-  fallbacks_ = fallbacksOf(all, costs, setting);
-  share(all, fallbacks_.groups, costs);
+  if (!key || costs.failed()) return;
+  const StageTimer timer(setting_.times, StageOfRun::Cache);
+  setting_.cache->put(*key, toBlob(divided_), true);
 }
 
 void Programs::share(const std::vector<OwnProgram>& all, const std::vector<Places>& groups,
                      const ProgramCosts& costs) {
   for (const Places& places : groups) {
     if (places.size() == 1) continue;
-    const auto group = std::make_shared<Group>();
-    group->lift = costs.liftOf(places);
+    SharedProgram shared{costs.liftOf(places), {}};
     for (const uint32_t item : places) {
-      for (const Structure* structure : all[item].structures)
-        members_[structure->key] = {group, structure->looks_through};
+      for (const Structure* structure : all[item].structures) shared.structures.push_back(structure->key);
     }
+    divided_.shared.push_back(std::move(shared));
   }
 }
 
 void Programs::divide(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
-                      size_t materials, ProgramCosts& costs) {
+                      ProgramCosts& costs) {
   const Options& options = setting_.options;
   const std::vector<Item> items = itemsOf(all, uses, costs);
   const bool report = !options.programs_report.empty();
@@ -168,18 +191,18 @@ void Programs::divide(const std::vector<OwnProgram>& all, const std::vector<Prog
                                  [&](const programs::Division& one) { return one.groups.size() <= wanted; });
   const programs::Division& division = made == divisions.end() ? divisions.back() : *made;
   share(all, division.groups, costs);
-  curve_.materials = materials;
-  curve_.structures = items.size();
-  curve_.made = division.groups.size();
-  curve_.measured = merging.measured;
+  programs::Curve& curve = divided_.curve;
+  curve.structures = items.size();
+  curve.made = division.groups.size();
+  curve.measured = merging.measured;
   if (!report) return;
-  curve_.points = programs::pointsOf(items, merging, divisions);
+  curve.points = programs::pointsOf(items, merging, divisions);
   if (costs.measured()) {
-    curve_.driver = costs.driver();
+    curve.driver = costs.driver();
     return;
   }
-  curve_.error = errorOf(items, merging, costs);
-  for (programs::Point& point : curve_.points) point.cost *= curve_.error.scale;
+  curve.error = errorOf(items, merging, costs);
+  for (programs::Point& point : curve.points) point.cost *= curve.error.scale;
 }
 
 bool Programs::beside() const { return setting_.options.fallback; }
@@ -203,14 +226,15 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
   if (place == group.places.end()) return {};
   const programs::Fill& fill = group.united.fills[place->second];
   own.graph = programs::instance(group.united, place->second, more);
+  // What a graph brings, a surface's of MaterialX too, comes from no property.
   own.numbers.assign(own.graph.parameters.size(), std::nullopt);
   for (size_t i = 0; i < own.numbers.size(); ++i) {
     const auto at = fill.numbers[i].own ? more.findParameter(own.graph.parameters[i].name) : std::nullopt;
-    if (at && material != nullptr) own.numbers[i] = origins.parameters[*at];
+    if (at && *at < origins.parameters.size()) own.numbers[i] = origins.parameters[*at];
   }
   own.textures.assign(own.graph.textures.size(), std::nullopt);
   for (size_t i = 0; i < own.textures.size(); ++i) {
-    for (size_t k = 0; material != nullptr && fill.textures[i].own && k < more.textures.size(); ++k) {
+    for (size_t k = 0; fill.textures[i].own && k < origins.textures.size(); ++k) {
       if (more.textures[k].name == own.graph.textures[i].name) own.textures[i] = origins.textures[k];
     }
   }
@@ -218,20 +242,20 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
 }
 
 Diagnostics Programs::about(size_t made) const {
-  if (setting_.options.fallback) return lacquer::about(fallbacks_);
+  if (setting_.options.fallback) return lacquer::about(divided_.fallbacks);
   const size_t wanted = setting_.options.programs;
   if (wanted == 0 || made <= wanted) return {};
   std::string help = fmt::format("the others cannot be made one: give --programs {}", made);
-  if (light_sets_ > 1) {
+  if (divided_.light_sets > 1) {
     help = fmt::format(
         "materials of {} different sets of known lights share none: give --lights any, or the same counts "
         "for all, or --programs {}",
-        light_sets_, made);
-  } else if (vertex_sets_ > 1) {
+        divided_.light_sets, made);
+  } else if (divided_.vertex_sets > 1) {
     help = fmt::format(
         "primitives of {} different vertex stages (skins, morph targets, instances, integers) share none: "
         "give --programs {}",
-        vertex_sets_, made);
+        divided_.vertex_sets, made);
   }
   return {{"programs",
            Severity::Warning,
@@ -244,17 +268,23 @@ Diagnostics Programs::about(size_t made) const {
 void Programs::close() {
   KeyBuilder digest;
   if (setting_.options.fallback) digest.text("fallback");
-  std::set<Group*> done;
+  std::map<Group*, size_t> done;
   for (const auto& [structure, member] : members_) {
     const std::shared_ptr<Group>& group = member.group;
-    digest.key(structure);
-    if (!done.insert(group.get()).second) continue;
+    const auto [at, fresh] = done.emplace(group.get(), done.size());
+    digest.key(structure).number(static_cast<uint64_t>(at->second)).number(member.looks_through);
+    if (!fresh) continue;
     // In the order of the texts: keys would bring in the versions of the tools.
     std::vector<std::pair<std::string, Key>> order;
     for (const auto& [key, graph] : group->graphs) order.emplace_back(graph::toJson(graph), key);
     std::sort(order.begin(), order.end());
+    for (const uint16_t extension : group->lift.extensions) digest.number(extension);
+    for (const std::string& term : group->lift.live) digest.text(term);
     std::vector<const graph::Graph*> members;
-    for (const auto& [text, key] : order) members.push_back(&group->graphs.at(key));
+    for (const auto& [text, key] : order) {
+      digest.text(text);
+      members.push_back(&group->graphs.at(key));
+    }
     if (members.empty()) continue;
     Result<programs::United> united = programs::unite(members, setting_.library);
     if (!united) continue;  // they keep their programs
@@ -277,7 +307,8 @@ std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures
   for (const Key& key : uses.structures()) {
     if (const Structure* structure = structures.known(key)) met.push_back(structure);
   }
-  auto programs = std::make_unique<Programs>(met, examples, uses.uses(), uses.materials(), setting);
+  auto programs =
+      std::make_unique<Programs>(met, examples, structures.shapes(), uses.uses(), uses.materials(), setting);
   setting.sharing = programs.get();
   structures.forgetShapes();
   Uses again;

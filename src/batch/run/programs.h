@@ -8,18 +8,11 @@
 #include "programs/curve.h"
 #include "programs/unite.h"
 #include "programs/weights.h"
-#include "run/fallbacks.h"
-#include "run/lift.h"
+#include "run/divided.h"
 #include "run/program_costs.h"
 #include "structures/structures.h"
 
 namespace lacquer {
-
-/// A material's use of a shader, and its share of the picture.
-struct ProgramUse {
-  std::string shader;
-  double weight = 0;
-};
 
 /// What a look at all inputs has found.
 class Uses {
@@ -44,9 +37,11 @@ private:
 class Programs : public Sharing {
 public:
   /// `structures`: those that the run has met, with their examples; `uses`: of every material. Decides which
-  /// of them share a program, as the options say.
+  /// of them share a program, as the options say, or finds in the cache what was decided for such materials.
+  /// `shapes` may be null.
   Programs(const std::vector<const Structure*>& structures, const Examples& examples,
-           const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting);
+           const KnownShapes* shapes, const std::vector<ProgramUse>& uses, size_t materials,
+           const Setting& setting);
 
   void note(const Key&, const material::Material&, const gltf::VertexAttributes&) override {}
   void note(const Key&, const graph::Graph&) override {}
@@ -59,14 +54,15 @@ public:
   bool beside() const override;
   bool closed() const override { return closed_; }
   const Key& digest() const override { return digest_; }
-  const programs::Curve& curve() const { return curve_; }
+  const programs::Curve& curve() const { return divided_.curve; }
   Diagnostics about(size_t made) const override;
 
 private:
+  void decide(const std::vector<const Structure*>& structures, const Examples& examples,
+              const std::vector<ProgramUse>& uses, const std::optional<Key>& key);
   void share(const std::vector<OwnProgram>& all, const std::vector<programs::Places>& groups,
              const ProgramCosts& costs);
-  void divide(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses, size_t materials,
-              ProgramCosts& costs);
+  void divide(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses, ProgramCosts& costs);
   /// Structures that share a program.
   struct Group {
     Lift lift;
@@ -83,10 +79,7 @@ private:
   std::map<Key, Member> members_;  ///< by the structure of a material's own graph
   bool closed_ = false;
   Key digest_;
-  programs::Curve curve_;
-  /// Different known lights, and vertex stages: materials share programs only within one of each.
-  size_t light_sets_ = 0, vertex_sets_ = 0;
-  Fallbacks fallbacks_;
+  Divided divided_;
 };
 
 /// What is wrong with the options that ask for programs: "programs-baked", "report-format",

@@ -43,6 +43,20 @@ namespace {
 /// The longest ticks are FAT's, of two seconds.
 constexpr auto kTick = std::chrono::seconds(2);
 
+/// An output that was written: its bytes count where its stamp alone says too little.
+struct Left {
+  FileStamp stamp;
+  Key content;  ///< Key{}: the stamp is enough
+};
+
+template <class Archive>
+void fields(Archive& archive, Left& left) {
+  archive(left.stamp, left.content);
+}
+
+/// Bytes that a digest is taken of at a time, of files that are written piece by piece.
+constexpr size_t kOutputBlock = size_t{1} << 20;
+
 /// From this number on, files are looked at from several threads; starting these takes as long as some
 /// hundred looks.
 constexpr size_t kMany = 512;
@@ -116,6 +130,30 @@ void readReport(BlobReader& blob, Report& report) {
 
 }  // namespace
 
+void OutputKey::append(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const size_t taken = std::min(bytes.size(), kOutputBlock - block_.size());
+    block_.append(bytes.data(), taken);
+    bytes.remove_prefix(taken);
+    if (block_.size() < kOutputBlock) return;
+    const Digest digest = digestOf(block_);
+    digests_.append(digest.begin(), digest.end());
+    block_.clear();
+  }
+}
+
+Key OutputKey::finish() {
+  const Digest last = digestOf(block_);
+  digests_.append(last.begin(), last.end());
+  return keyOf(digests_);
+}
+
+Key outputKey(std::string_view bytes) {
+  OutputKey key;
+  key.append(bytes);
+  return key.finish();
+}
+
 Receipt::Receipt(const Strings& files, const Strings& materials, const std::string& folder,
                  const Options& options, const Key& base, Cache& cache)
     : files_(inputsOf(files, options)),
@@ -167,6 +205,12 @@ void Receipt::note(Report& report, const std::vector<uint8_t>& same) {
   }
 }
 
+bool Receipt::settled(const FileStamp& stamp) const {
+  const int64_t before =
+      std::chrono::duration_cast<std::chrono::nanoseconds>((begin_ - kTick).time_since_epoch()).count();
+  return std::max(stamp.modified, stamp.changed) < before;
+}
+
 bool Receipt::find(Report& report, Messages& messages) {
   if (!key_) return false;
   // Once in an hour the run is made in full, so that what it needs counts as used and stays in the cache.
@@ -177,21 +221,38 @@ bool Receipt::find(Report& report, Messages& messages) {
   Report earlier;
   Messages said;
   std::vector<Key> contents;
-  std::vector<FileStamp> stamps;
+  std::vector<Left> left;
   blob(contents);
   readReport(blob, earlier);
-  blob(said, stamps);
+  blob(said, left);
   const std::vector<std::string> paths = outputs(earlier);
-  if (!blob.complete() || stamps.size() != paths.size()) return false;
+  if (!blob.complete() || left.size() != paths.size()) return false;
   std::vector<uint8_t> same(paths.size());
-  forEach(paths.size(), [&](size_t i) { same[i] = stampOf(paths[i]) == stamps[i] ? 1 : 0; });
+  forEach(paths.size(), [&](size_t i) {
+    same[i] = stampOf(paths[i]) == left[i].stamp ? 1 : 0;
+    if (same[i] == 0 || left[i].content == Key{}) return;
+    const Result<std::string> there = readFile(paths[i]);
+    same[i] = there && outputKey(*there) == left[i].content ? 1 : 0;
+  });
+  bool settles = false;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (left[i].content == Key{}) continue;
+    if (same[i] != 0) written_[paths[i]] = left[i].content;
+    settles |= settled(left[i].stamp);
+  }
   if (contents != contents_ || std::find(same.begin(), same.end(), 0) != same.end()) {
     note(earlier, same);
     return false;
   }
   report = std::move(earlier);
+  if (settles) keep(report, said);  // from now on the stamps of what has settled are enough
   messages.insert(messages.end(), std::make_move_iterator(said.begin()), std::make_move_iterator(said.end()));
   return true;
+}
+
+const Key* Receipt::contentOf(const std::string& path) const {
+  const auto it = written_.find(path);
+  return it == written_.end() ? nullptr : &it->second;
 }
 
 const ShaderReport* Receipt::untouched(const std::string& id) const {
@@ -202,25 +263,23 @@ const ShaderReport* Receipt::untouched(const std::string& id) const {
 void Receipt::keep(const Report& report, const Messages& said) const {
   if (!key_ || !report.ok || hasError(said)) return;
   const std::vector<std::string> paths = outputs(report);
-  std::vector<FileStamp> stamps(paths.size());
-  std::vector<uint8_t> there(paths.size());
+  std::vector<Left> left(paths.size());
+  std::vector<uint8_t> known(paths.size());
   forEach(paths.size(), [&](size_t i) {
     const std::optional<FileStamp> stamp = stampOf(paths[i]);
-    there[i] = stamp ? 1 : 0;
-    stamps[i] = stamp.value_or(FileStamp{});
+    if (!stamp) return;
+    left[i].stamp = *stamp;
+    const Key* written = settled(*stamp) ? nullptr : contentOf(paths[i]);
+    if (written != nullptr) left[i].content = *written;
+    known[i] = written != nullptr || settled(*stamp) ? 1 : 0;
   });
-  const int64_t settled =
-      std::chrono::duration_cast<std::chrono::nanoseconds>((begin_ - kTick).time_since_epoch()).count();
-  const bool old = std::all_of(stamps.begin(), stamps.end(), [&](const FileStamp& stamp) {
-    return std::max(stamp.modified, stamp.changed) < settled;
-  });
-  const bool all = old && std::find(there.begin(), there.end(), 0) == there.end();
+  const bool all = std::find(known.begin(), known.end(), 0) == known.end();
   // What the run has read must be what the receipt is for.
   if (!all || contentsOf(files_, largest_) != contents_) return;
   BlobWriter blob;
   blob(contents_);
   writeReport(report, blob);
-  blob(said, stamps);
+  blob(said, left);
   cache_.put(*key_, blob.take(), true);
 }
 

@@ -14,6 +14,17 @@
 
 namespace lacquer {
 
+/// The key of an output's bytes, which come piece by piece.
+class OutputKey {
+public:
+  void append(std::string_view bytes);
+  Key finish();
+
+private:
+  std::string block_, digests_;
+};
+Key outputKey(std::string_view bytes);
+
 class Receipt {
 public:
   /// Reads the inputs. `base` covers this build and the node library. Made before the run looks at any
@@ -32,13 +43,20 @@ public:
   /// After find() alone: a shader whose files are all as an earlier run left them; null when they may not be.
   const ShaderReport* untouched(const std::string& id) const;
 
-  /// Keeps what was found or made for the next run. `said`: by this run. Not where an output is so young that
-  /// its next change could go unseen.
+  /// What this run has written to an output. Its stamp may be so young that another change could go unseen:
+  /// then the next run looks at the bytes, too.
+  void wrote(const std::string& path, const Key& content) { written_[path] = content; }
+  /// The same of a file that is untouched(): null where its stamp is enough.
+  const Key* contentOf(const std::string& path) const;
+
+  /// Keeps what was found or made for the next run. `said`: by this run. Not where an output is young and it
+  /// is not known what was written there.
   void keep(const Report& report, const Messages& said) const;
 
 private:
   std::vector<std::string> outputs(const Report& report) const;
   void note(Report& report, const std::vector<uint8_t>& same);
+  bool settled(const FileStamp& stamp) const;
 
   const Strings files_;  ///< the inputs, and the weights where there are some
   const std::string& folder_;
@@ -49,6 +67,7 @@ private:
   std::vector<Key> contents_;  ///< of the inputs
   std::optional<Key> key_;     ///< absent when one of them cannot be read
   std::map<std::string, ShaderReport> untouched_;
+  std::map<std::string, Key> written_;
 };
 
 }  // namespace lacquer

@@ -120,14 +120,19 @@ void Run::mergePrograms(const std::vector<std::string>& files, InputKind kind,
   report(weights_.unused(options_.weights), {});
 }
 
-void Run::writeProgramsReport() {
+void Run::write(const std::string& path, const std::string& text, Receipt* receipt) {
+  wrote(writeFile(path, text, {nullptr, options_.sync}));
+  if (receipt != nullptr) receipt->wrote(path, outputKey(text));
+}
+
+void Run::writeProgramsReport(Receipt* receipt) {
   const std::string& path = options_.programs_report;
   if (path.empty() || !programs_) return;
   const programs::Curve& curve = programs_->curve();
   const std::string text = path.ends_with(".json") ? programs::toJson(curve)
                            : path.ends_with(".md") ? programs::toMarkdown(curve)
                                                    : programs::toSvg(curve);
-  wrote(writeFile(path, text, {nullptr, options_.sync}));
+  write(path, text, receipt);
 }
 
 std::optional<Receipt> Run::receipt(const Strings& files, const Strings& materials,
@@ -216,7 +221,7 @@ void Run::checkNames(const std::vector<std::string>& only, const std::vector<std
   }
 }
 
-bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
+bool Run::make(const std::string& folder, const Scratch& scratch, Receipt* receipt,
                const std::function<void(const MadeShader&)>& each) {
   Strings outputs;
   for (const auto& [id, shader] : structures_->shaders()) {
@@ -235,6 +240,8 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
     report(shader.wrong, {});
     report_.ok &= shader.wrong.empty();
     report_.shaders.push_back({shader.id, shader.files, shader.validated});
+    for (size_t i = 0; receipt != nullptr && i < shader.contents.size(); ++i)
+      receipt->wrote(folder + "/" + shader.files[i].first, shader.contents[i]);
     report_.made += shader.cached ? 0 : 1;
     report_.written += shader.written;
     if (!shader.text.empty()) each(shader);

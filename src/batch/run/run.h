@@ -34,7 +34,7 @@ public:
 
   /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids. `receipt` may
   /// be null. False, with nothing written, when a shader's file is an input.
-  bool make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
+  bool make(const std::string& folder, const Scratch& scratch, Receipt* receipt,
             const std::function<void(const MadeShader&)>& each);
 
   void report(const Diagnostics& diagnostics, const std::string& file) {
@@ -54,8 +54,10 @@ public:
   /// Reports what went wrong with a file that was to be written.
   void wrote(const Result<bool>& written);
   Structures& structures() { return *structures_; }
-  /// Writes what programs cost, where the options ask for it.
-  void writeProgramsReport();
+  /// Writes what programs cost, where the options ask for it. `receipt` may be null.
+  void writeProgramsReport(Receipt* receipt);
+  /// A whole file; `receipt`, which may be null, takes note of it.
+  void write(const std::string& path, const std::string& text, Receipt* receipt);
   Report& result() { return report_; }
   Report finish();
   /// Every file that the run reads: the inputs, the node files, and once the inputs are read what they

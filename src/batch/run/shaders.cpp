@@ -47,6 +47,7 @@ void Maker::write(const std::string& id, const Structure& structure,
       else
         made.written += *written ? 1 : 0;
       made.files.emplace_back(path, bytes.size());
+      if (receipt_ != nullptr) made.contents.push_back(outputKey(bytes));
     }
   }
 }

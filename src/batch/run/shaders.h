@@ -13,6 +13,7 @@ struct MadeShader {
   std::string text;  ///< the shader's entry in the manifest
   Diagnostics wrong;
   std::vector<std::pair<std::string, size_t>> files;  ///< path below the folder, bytes
+  std::vector<Key> contents;                          ///< of the files, where they were made
   bool validated = false;
   bool cached = false;  ///< nothing had to be made
   size_t written = 0;   ///< files that were not there or had other bytes

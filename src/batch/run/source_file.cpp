@@ -510,6 +510,10 @@ FileResult makeInput(const Input& input, const std::vector<std::string>& only, c
   const bool looking = setting.sharing != nullptr && !setting.sharing->closed();
   const bool keep = setting.cache != nullptr && only.empty() && !looking;
   const Key key = keep ? fileKey(input.path, input.content, setting) : Key{};
+  if (keep) {
+    if (std::optional<FileResult> cached = cachedFile(input.path, key, setting, structures))
+      return std::move(*cached);
+  }
   return makeScene(input, keep ? &key : nullptr, only, setting, structures);
 }
 

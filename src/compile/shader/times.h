@@ -43,22 +43,36 @@ private:
   std::array<std::atomic<int64_t>, 12 * kMostTargets> spent_{};
 };
 
-/// Counts its own life.
+/// Counts its own life, but for that of others which begin and end within it on the same thread: what a part
+/// of a stage is counted as is not counted twice.
 class StageTimer {
 public:
   StageTimer(StageTimes* times, StageOfRun stage, Target target = Target::Glsl)
-      : times_(times), stage_(stage), target_(target), begin_(std::chrono::steady_clock::now()) {}
+      : times_(times), stage_(stage), target_(target), outer_(running_), begin_(Clock::now()) {
+    if (outer_ != nullptr) outer_->count(begin_);
+    running_ = this;
+  }
   ~StageTimer() {
-    if (times_ != nullptr) times_->add(stage_, target_, std::chrono::steady_clock::now() - begin_);
+    const Clock::time_point end = Clock::now();
+    count(end);
+    if (outer_ != nullptr) outer_->begin_ = end;
+    running_ = outer_;
   }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
 private:
+  using Clock = std::chrono::steady_clock;
+  void count(Clock::time_point until) {
+    if (times_ != nullptr) times_->add(stage_, target_, until - begin_);
+  }
+
+  static inline thread_local StageTimer* running_ = nullptr;  ///< the innermost of this thread
   StageTimes* times_;
   StageOfRun stage_;
   Target target_;
-  std::chrono::steady_clock::time_point begin_;
+  StageTimer* outer_;
+  Clock::time_point begin_;
 };
 
 }  // namespace lacquer

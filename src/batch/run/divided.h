@@ -1,0 +1,51 @@
+// What Programs decides for a run, and how the cache keeps it: a run whose materials differ from an earlier
+// one's in numbers alone need not measure anything.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "programs/curve.h"
+#include "run/fallbacks.h"
+#include "run/lift.h"
+#include "structures/shapes.h"
+
+namespace lacquer {
+
+/// Structures of one program, by their keys, and what their materials have together.
+struct SharedProgram {
+  Lift lift;
+  std::vector<Key> structures;
+};
+
+struct Divided {
+  std::vector<SharedProgram> shared;
+  programs::Curve curve;  ///< without the number of materials
+  /// Different known lights, and vertex stages: materials share programs only within one of each.
+  uint64_t light_sets = 0, vertex_sets = 0;
+  Fallbacks fallbacks;
+};
+
+/// A material's use of a shader, and its share of the picture.
+struct ProgramUse {
+  std::string shader;
+  double weight = 0;
+};
+
+/// The shares of each shader, added up: in an order that is not that of the files, which would show in how
+/// the sum is rounded.
+std::map<std::string, double> weightsByShader(const std::vector<ProgramUse>& uses);
+
+/// Of everything that Programs decides by. Of the examples' numbers only those that decide of a graph are in
+/// it (model/shape.h); `shapes` may be null. None where a driver is asked that cannot be told from others.
+std::optional<Key> dividedKey(const std::vector<const Structure*>& structures, const Examples& examples,
+                              const KnownShapes* shapes, const std::vector<ProgramUse>& uses,
+                              const Setting& setting);
+
+std::string toBlob(const Divided& divided);
+/// Nothing where the bytes are none of these structures.
+std::optional<Divided> dividedFrom(std::string_view bytes, const std::vector<const Structure*>& structures,
+                                   const Setting& setting);
+
+}  // namespace lacquer
