@@ -43,6 +43,21 @@ static void fields(Archive& archive, Curve& curve) {
   archive(curve.structures, curve.made, curve.measured, curve.driver, curve.error, curve.points);
 }
 
+template <class Archive>
+static void fields(Archive& archive, NumberFill& fill) {
+  archive(fill.own, fill.value);
+}
+
+template <class Archive>
+static void fields(Archive& archive, TextureFill& fill) {
+  archive(fill.own, fill.texel);
+}
+
+template <class Archive>
+static void fields(Archive& archive, Fill& fill) {
+  archive(fill.numbers, fill.textures);
+}
+
 }  // namespace programs
 
 template <class Archive>
@@ -52,19 +67,8 @@ static void fields(Archive& archive, Divided& divided) {
 
 namespace {
 
-/// What a material's graphs depend on, with whatever lift; of a graph that is the input, the graph.
-void addExample(const Example& example, const Structure& structure, const KnownShapes* shapes,
-                const Setting& setting, KeyBuilder& key) {
-  const material::Material& material = example.material;
-  const Strings& live = setting.options.live;
-  const bool watched = std::any_of(live.begin(), live.end(), [&](const std::string& name) {
-    return watchedPath(name, material.index).has_value();
-  });
-  if (shapes != nullptr && !example.graph && !material.patterns && !watched)
-    key.text(shapes->keyOf(material, example.attributes, structure.lights));
-  else
-    key.key(example.content).number(watched ? material.index : -1);
-}
+/// Of all of a graph that a shader is made of.
+Key graphKey(const graph::Graph& graph, const Setting& setting) { return structureKey(graph, {}, setting); }
 
 }  // namespace
 
@@ -81,8 +85,7 @@ std::map<std::string, double> weightsByShader(const std::vector<ProgramUse>& use
 }
 
 std::optional<Key> dividedKey(const std::vector<const Structure*>& structures, const Examples& examples,
-                              const KnownShapes* shapes, const std::vector<ProgramUse>& uses,
-                              const Setting& setting) {
+                              const std::vector<ProgramUse>& uses, const Setting& setting) {
   const Options& options = setting.options;
   KeyBuilder key;
   key.text("divided").key(setting.base);
@@ -96,13 +99,14 @@ std::optional<Key> dividedKey(const std::vector<const Structure*>& structures, c
     key.text(why_not).text(driver);
   }
   // Whatever the order in which they were met.
-  std::map<Key, const Structure*> sorted;
-  for (const Structure* structure : structures) sorted.emplace(structure->key, structure);
+  std::set<Key> sorted;
+  for (const Structure* structure : structures) sorted.insert(structure->key);
   key.number(static_cast<uint64_t>(sorted.size()));
-  for (const auto& [own, structure] : sorted) {
+  for (const Key& own : sorted) {
     const Example* example = examples.of(own);
     key.key(own).number(example != nullptr);
-    if (example != nullptr) addExample(*example, *structure, shapes, setting, key);
+    if (example == nullptr) continue;
+    key.key(example->shape.value_or(example->content)).number(example->shape ? -1 : example->material.index);
   }
   for (const auto& [shader, weight] : weightsByShader(uses)) key.text(shader).number(weight);
   return key.finish();
@@ -137,6 +141,46 @@ std::optional<Divided> dividedFrom(std::string_view bytes, const std::vector<con
     if (!good) return std::nullopt;
   }
   return divided;
+}
+
+std::string toBlob(const UnitedPrograms& united, const Setting& setting) {
+  BlobWriter blob;
+  blob(united.digest, static_cast<uint64_t>(united.programs.size()));
+  for (const UnitedProgram& one : united.programs) {
+    const std::string text = one.members.empty() ? std::string() : graph::toJson(one.united.graph);
+    // By which one sees whether the text says all.
+    const Key key = graphKey(one.united.graph, setting);
+    blob(one.members, text, key, one.united.fills, one.united.choices);
+  }
+  return blob.take();
+}
+
+std::optional<UnitedPrograms> unitedFrom(std::string_view bytes, const Divided& divided,
+                                         const Setting& setting) {
+  UnitedPrograms united;
+  BlobReader blob(bytes);
+  uint64_t count = 0;
+  blob(united.digest, count);
+  if (!blob.good() || count != divided.shared.size()) return std::nullopt;
+  for (uint64_t i = 0; i < count; ++i) {
+    UnitedProgram& one = united.programs.emplace_back();
+    std::string text;
+    Key key;
+    blob(one.members, text, key, one.united.fills, one.united.choices);
+    if (!blob.good() || one.members.size() != one.united.fills.size()) return std::nullopt;
+    if (one.members.empty()) continue;
+    Result<graph::Graph> graph = graph::fromJson(text, "program", setting.limits);
+    if (!graph || hasError(graph::check(*graph, setting.library, setting.limits.nodes))) return std::nullopt;
+    if (graphKey(*graph, setting) != key) return std::nullopt;
+    const bool whole = std::all_of(one.united.fills.begin(), one.united.fills.end(), [&](const auto& fill) {
+      return fill.numbers.size() == graph->parameters.size() &&
+             fill.textures.size() == graph->textures.size();
+    });
+    if (!whole) return std::nullopt;
+    one.united.graph = std::move(*graph);
+  }
+  if (!blob.complete()) return std::nullopt;
+  return united;
 }
 
 }  // namespace lacquer

@@ -9,7 +9,6 @@
 #include "programs/curve.h"
 #include "run/fallbacks.h"
 #include "run/lift.h"
-#include "structures/shapes.h"
 
 namespace lacquer {
 
@@ -38,10 +37,27 @@ struct ProgramUse {
 std::map<std::string, double> weightsByShader(const std::vector<ProgramUse>& uses);
 
 /// Of everything that Programs decides by. Of the examples' numbers only those that decide of a graph are in
-/// it (model/shape.h); `shapes` may be null. None where a driver is asked that cannot be told from others.
+/// it (model/shape.h). None where a driver is asked that cannot be told from others.
 std::optional<Key> dividedKey(const std::vector<const Structure*>& structures, const Examples& examples,
-                              const KnownShapes* shapes, const std::vector<ProgramUse>& uses,
-                              const Setting& setting);
+                              const std::vector<ProgramUse>& uses, const Setting& setting);
+
+/// A program that materials share, and the structures of the graphs that were united for it; empty where they
+/// could not be.
+struct UnitedProgram {
+  std::vector<Key> members;
+  programs::United united;
+};
+
+/// In the order of Divided::shared.
+struct UnitedPrograms {
+  std::vector<UnitedProgram> programs;
+  Key digest;
+};
+
+std::string toBlob(const UnitedPrograms& united, const Setting& setting);
+/// Nothing where the bytes are not the programs of this division.
+std::optional<UnitedPrograms> unitedFrom(std::string_view bytes, const Divided& divided,
+                                         const Setting& setting);
 
 std::string toBlob(const Divided& divided);
 /// Nothing where the bytes are none of these structures.

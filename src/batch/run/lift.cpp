@@ -72,16 +72,24 @@ bool add(uint16_t extension, const gltf::VertexAttributes& attributes, const gra
 }  // namespace
 
 void Examples::note(const Key& structure, const material::Material& material,
-                    const gltf::VertexAttributes& attributes) {
-  keep(structure, {contentOf(material, attributes), material, attributes, {}});
+                    const gltf::VertexAttributes& attributes, const std::string& shape) {
+  keep(structure, {contentOf(material, attributes),
+                   material,
+                   attributes,
+                   {},
+                   shape.empty() ? std::nullopt : std::optional(keyOf(shape))});
 }
 
 void Examples::note(const Key& structure, const graph::Graph& graph) {
-  keep(structure, {keyOf(graph::toJson(graph)), {}, {}, graph});
+  keep(structure, {keyOf(graph::toJson(graph)), {}, {}, graph, {}});
 }
 
 void Examples::keep(const Key& structure, Example example) {
   const std::lock_guard lock(mutex_);
+  if (example.shape)
+    shapes_.emplace(structure, *example.shape);
+  else
+    shapeless_ = true;
   const auto [it, fresh] = examples_.try_emplace(structure);
   if (fresh || example.content < it->second.content) it->second = std::move(example);
 }

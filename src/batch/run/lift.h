@@ -23,6 +23,7 @@ struct Example {
   material::Material material;
   gltf::VertexAttributes attributes;
   std::optional<graph::Graph> graph;  ///< where it was not built of a material
+  std::optional<Key> shape;           ///< of the material: what decides of its graphs but for values
 };
 
 /// For every structure of a run the example with the smallest content, whatever the order in which the
@@ -30,7 +31,7 @@ struct Example {
 class Examples : public Sharing {
 public:
   void note(const Key& structure, const material::Material& material,
-            const gltf::VertexAttributes& attributes) override;
+            const gltf::VertexAttributes& attributes, const std::string& shape) override;
   void note(const Key& structure, const graph::Graph& graph) override;
   Share bring(Traced&, const material::Material*, const gltf::VertexAttributes&,
               const passes::LightFacts&) override {
@@ -41,12 +42,17 @@ public:
   Diagnostics about(size_t) const override { return {}; }
   /// Null for a structure of which no material came. Not beside note().
   const Example* of(const Key& structure) const;
+  /// Of all materials, by structure: whatever their graphs depend on beside the lift. Null where some have
+  /// no shape. Not beside note().
+  const std::set<std::pair<Key, Key>>* shapes() const { return shapeless_ ? nullptr : &shapes_; }
 
 private:
   void keep(const Key& structure, Example example);
 
   std::mutex mutex_;
   std::map<Key, Example> examples_;
+  std::set<std::pair<Key, Key>> shapes_;
+  bool shapeless_ = false;
   Key digest_;
 };
 

@@ -117,33 +117,32 @@ programs::ModelError errorOf(const std::vector<Item>& items, const programs::Mer
 }  // namespace
 
 Programs::Programs(const std::vector<const Structure*>& structures, const Examples& examples,
-                   const KnownShapes* shapes, const std::vector<ProgramUse>& uses, size_t materials,
-                   const Setting& setting)
-    : setting_(setting) {
-  std::optional<Key> key;
+                   const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting)
+    : setting_(setting), shapes_(examples.shapes()) {
   std::optional<Divided> kept;
   if (setting.cache != nullptr) {
-    key = dividedKey(structures, examples, shapes, uses, setting);
+    key_ = dividedKey(structures, examples, uses, setting);
     const StageTimer timer(setting.times, StageOfRun::Cache);
-    if (const std::optional<std::string> bytes = key ? setting.cache->get(*key) : std::nullopt)
+    if (const std::optional<std::string> bytes = key_ ? setting.cache->get(*key_) : std::nullopt)
       kept = dividedFrom(*bytes, structures, setting);
   }
   if (kept)
     divided_ = std::move(*kept);
   else
-    decide(structures, examples, uses, key);
+    decide(structures, examples, uses);
   divided_.curve.materials = materials;
   std::map<Key, const Structure*> known;
   for (const Structure* structure : structures) known.emplace(structure->key, structure);
   for (const SharedProgram& shared : divided_.shared) {
     const auto group = std::make_shared<Group>();
     group->lift = shared.lift;
+    groups_.push_back(group);
     for (const Key& one : shared.structures) members_[one] = {group, known.at(one)->looks_through};
   }
 }
 
 void Programs::decide(const std::vector<const Structure*>& structures, const Examples& examples,
-                      const std::vector<ProgramUse>& uses, const std::optional<Key>& key) {
+                      const std::vector<ProgramUse>& uses) {
   const Options& options = setting_.options;
   const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting_);
   std::set<std::map<std::string, int>> lights;
@@ -161,9 +160,10 @@ void Programs::decide(const std::vector<const Structure*>& structures, const Exa
   } else {
     divide(all, uses, costs);
   }
-  if (!key || costs.failed()) return;
+  if (costs.failed()) key_.reset();
+  if (!key_) return;
   const StageTimer timer(setting_.times, StageOfRun::Cache);
-  setting_.cache->put(*key, toBlob(divided_), true);
+  setting_.cache->put(*key_, toBlob(divided_), true);
 }
 
 void Programs::share(const std::vector<OwnProgram>& all, const std::vector<Places>& groups,
@@ -265,7 +265,34 @@ Diagnostics Programs::about(size_t made) const {
            {}}};
 }
 
+std::optional<Key> Programs::unitedKey() const {
+  if (!key_ || shapes_ == nullptr) return std::nullopt;
+  KeyBuilder key;
+  key.text("united").key(*key_);
+  for (const auto& [structure, shape] : *shapes_) key.key(structure).key(shape);
+  return key.finish();
+}
+
+bool Programs::closeAsBefore() {
+  const std::optional<Key> key = unitedKey();
+  if (!key) return false;
+  const StageTimer timer(setting_.times, StageOfRun::Cache);
+  const std::optional<std::string> bytes = setting_.cache->get(*key);
+  std::optional<UnitedPrograms> kept;
+  if (bytes) kept = unitedFrom(*bytes, divided_, setting_);
+  if (!kept) return false;
+  for (size_t i = 0; i < groups_.size(); ++i) {
+    groups_[i]->united = std::move(kept->programs[i].united);
+    const std::vector<Key>& members = kept->programs[i].members;
+    for (size_t k = 0; k < members.size(); ++k) groups_[i]->places.emplace(members[k], k);
+  }
+  digest_ = kept->digest;
+  closed_ = true;
+  return true;
+}
+
 void Programs::close() {
+  const StageTimer timer(setting_.times, StageOfRun::Programs);
   KeyBuilder digest;
   if (setting_.options.fallback) digest.text("fallback");
   std::map<Group*, size_t> done;
@@ -294,6 +321,20 @@ void Programs::close() {
   }
   digest_ = digest.finish();
   closed_ = true;
+  const std::optional<Key> key = unitedKey();
+  if (!key) return;
+  UnitedPrograms kept;
+  kept.digest = digest_;
+  for (const std::shared_ptr<Group>& group : groups_) {
+    UnitedProgram& one = kept.programs.emplace_back();
+    one.members.resize(group->places.size());
+    for (const auto& [structure, place] : group->places) one.members[place] = structure;
+    one.united = group->united;
+  }
+  const std::string blob = toBlob(kept, setting_);
+  if (!unitedFrom(blob, divided_, setting_)) return;  // what does not come back as it was
+  const StageTimer putting(setting_.times, StageOfRun::Cache);
+  setting_.cache->put(*key, blob, true);
 }
 
 std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures,
@@ -307,13 +348,15 @@ std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures
   for (const Key& key : uses.structures()) {
     if (const Structure* structure = structures.known(key)) met.push_back(structure);
   }
-  auto programs =
-      std::make_unique<Programs>(met, examples, structures.shapes(), uses.uses(), uses.materials(), setting);
+  auto programs = std::make_unique<Programs>(met, examples, uses.uses(), uses.materials(), setting);
   setting.sharing = programs.get();
   structures.forgetShapes();
-  Uses again;
-  if (setting.options.programs > 0 || setting.options.fallback) look(again);
-  programs->close();
+  if (!programs->closeAsBefore()) {
+    Uses again;
+    if (setting.options.programs > 0 || setting.options.fallback) look(again);
+    programs->close();
+  }
+  programs->forgetExamples();
   structures.lookAgain();
   return programs;
 }

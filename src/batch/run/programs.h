@@ -38,18 +38,21 @@ class Programs : public Sharing {
 public:
   /// `structures`: those that the run has met, with their examples; `uses`: of every material. Decides which
   /// of them share a program, as the options say, or finds in the cache what was decided for such materials.
-  /// `shapes` may be null.
   Programs(const std::vector<const Structure*>& structures, const Examples& examples,
-           const KnownShapes* shapes, const std::vector<ProgramUse>& uses, size_t materials,
-           const Setting& setting);
+           const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting);
 
-  void note(const Key&, const material::Material&, const gltf::VertexAttributes&) override {}
+  void note(const Key&, const material::Material&, const gltf::VertexAttributes&,
+            const std::string&) override {}
   void note(const Key&, const graph::Graph&) override {}
   /// Until close() it only looks at the graph, and leaves it. From several threads at once.
   Share bring(Traced& own, const material::Material* material, const gltf::VertexAttributes& attributes,
               const passes::LightFacts& lights) override;
   /// Unites what was looked at. Not beside bring().
   void close();
+  /// True where an earlier run has united what these materials bring: then nothing needs to be looked at.
+  bool closeAsBefore();
+  /// The examples may go from here on.
+  void forgetExamples() { shapes_ = nullptr; }
 
   bool beside() const override;
   bool closed() const override { return closed_; }
@@ -59,9 +62,10 @@ public:
 
 private:
   void decide(const std::vector<const Structure*>& structures, const Examples& examples,
-              const std::vector<ProgramUse>& uses, const std::optional<Key>& key);
+              const std::vector<ProgramUse>& uses);
   void share(const std::vector<OwnProgram>& all, const std::vector<programs::Places>& groups,
              const ProgramCosts& costs);
+  std::optional<Key> unitedKey() const;
   void divide(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses, ProgramCosts& costs);
   /// Structures that share a program.
   struct Group {
@@ -79,6 +83,10 @@ private:
   std::map<Key, Member> members_;  ///< by the structure of a material's own graph
   bool closed_ = false;
   Key digest_;
+  std::vector<std::shared_ptr<Group>> groups_;  ///< of divided_.shared
+  std::optional<Key> key_;                      ///< of divided_; absent where it is not kept
+  /// Of all materials; null where they do not say what the materials bring.
+  const std::set<std::pair<Key, Key>>* shapes_ = nullptr;
   Divided divided_;
 };
 

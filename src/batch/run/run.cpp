@@ -37,6 +37,7 @@ Run::Run(const Options& options, const Strings& inputs, Messages& messages,
       shown_(std::chrono::steady_clock::now()),
       said_before_(messages.size()),
       inputs_(inputs) {
+  other_.emplace(&times_, StageOfRun::Other);
   if (!options.weights.empty()) inputs_.push_back(options.weights);
 }
 
@@ -51,6 +52,7 @@ bool Run::prepare() {
     return false;
   }
   if (!checkPrograms()) return false;
+  const StageTimer timer(&times_, StageOfRun::Read);
   base_ = baseOf(options_, &node_files_, &nodes_known_);
   if (options_.cache.empty()) return true;
   Result<std::string> secret;
@@ -294,6 +296,7 @@ std::vector<std::string> Run::readFiles() const {
 
 Report Run::finish() {
   if (cache_) report(cache_->problems(), {});
+  other_.reset();
   report_.times = times_.list();
   return std::move(report_);
 }

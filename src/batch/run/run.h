@@ -82,7 +82,8 @@ private:
   std::chrono::steady_clock::time_point shown_;
   std::shared_ptr<const Language> library_;
   StageTimes times_;
-  Key base_;  ///< of this build and the node library
+  std::optional<StageTimer> other_;  ///< from the beginning to finish()
+  Key base_;                         ///< of this build and the node library
   bool prepared_ = false;
   bool nodes_known_ = true;  ///< the base covers every node file
   size_t said_before_ = 0;   ///< messages that are not of this run

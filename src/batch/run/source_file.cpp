@@ -119,6 +119,7 @@ public:
 
 private:
   Done make(const Wanted& wanted) const {
+    const StageTimer timer(setting_.times, StageOfRun::Manifest);
     return textOf(wanted, path_, setting_, describe(wanted, path_, lights_, setting_, structures_));
   }
 

@@ -137,7 +137,7 @@ bool Describer::known(const std::string& key, const gltf::VertexAttributes& attr
   std::optional<Filling> fallback;
   if (shape->fallback) fallback = structures_.shapes()->fill(*shape->fallback, material_);
   if (fallback && !withinLimits(*shape->fallback->structure, *fallback)) return false;
-  if (setting_.sharing != nullptr) setting_.sharing->note(shape->structure->key, material_, attributes);
+  if (setting_.sharing != nullptr) setting_.sharing->note(shape->structure->key, material_, attributes, key);
   met_.push_back(shape->structure);
   accept(*shape, filling, fallback ? &*fallback : nullptr, attributes);
   return true;
@@ -170,12 +170,9 @@ void Describer::use(Traced own, const gltf::VertexAttributes& attributes, const 
                     const std::string& key) {
   KnownShape shape;
   graph::Graph common;  // what the fallback's filling points into
+  Key alone;            // of the structure without a share in anything
   if (setting_.sharing != nullptr) {
-    const Key structure = structureKey(own.graph, lights_, setting_);
-    if (wanted_.material != nullptr)
-      setting_.sharing->note(structure, material_, attributes);
-    else
-      setting_.sharing->note(structure, own.graph);
+    alone = structureKey(own.graph, lights_, setting_);
     if (setting_.sharing->beside()) {
       common = own.graph;
       shape.fallback = fallbackOf({common, own.numbers, own.textures}, own.graph, attributes);
@@ -186,6 +183,13 @@ void Describer::use(Traced own, const gltf::VertexAttributes& attributes, const 
   const Structure& structure = structures_.of(
       own.graph, lights_, shape.fallback ? layoutOf(*shape.fallback->structure) : passes::OtherLayout());
   Filling filling = fillingOf(own.graph, material_);
+  if (setting_.sharing != nullptr && wanted_.material == nullptr) {
+    setting_.sharing->note(alone, own.graph);
+  } else if (setting_.sharing != nullptr) {
+    // Numbers that the check complains of decide of more than values.
+    const bool usual = !structure.shader.empty() && withinLimits(structure, filling);
+    setting_.sharing->note(alone, material_, attributes, usual ? key : std::string());
+  }
   met_.push_back(&structure);
   add(said);
   shape.structure = &structure;

@@ -70,9 +70,9 @@ public:
     const programs::Fill* fill = nullptr;  ///< null for a material that keeps its program
     bool looks_through = false;
   };
-  /// Takes note of a material whose graph needs a structure.
+  /// Takes note of a material whose graph needs a structure. `shape`: its own (KnownShapes), or empty.
   virtual void note(const Key& structure, const material::Material& material,
-                    const gltf::VertexAttributes& attributes) = 0;
+                    const gltf::VertexAttributes& attributes, const std::string& shape) = 0;
   /// The same of a graph that is the input.
   virtual void note(const Key& structure, const graph::Graph& graph) = 0;
   /// Puts the graph of a material's program in place of its own. `material`: that the graph was built of;

@@ -10,6 +10,7 @@ std::vector<std::pair<std::string, double>> StageTimes::list() const {
       {StageOfRun::Driver, "driver"},   {StageOfRun::Manifest, "manifest"},
       {StageOfRun::Print, "print"},     {StageOfRun::Validate, "validate"},
       {StageOfRun::Cache, "cache"},     {StageOfRun::Write, "write"},
+      {StageOfRun::Other, "other"},
   };
   std::vector<std::pair<std::string, double>> rows;
   for (const auto& [stage, name] : kRows) {

@@ -24,7 +24,8 @@ enum class StageOfRun : uint8_t {
   Print,
   Validate,
   Cache,
-  Write
+  Write,
+  Other,  ///< what the run's own thread does beside: starts and awaits the others
 };
 
 class StageTimes {
@@ -40,7 +41,7 @@ private:
   std::atomic<int64_t>& slot(StageOfRun stage, Target target) {
     return spent_[static_cast<size_t>(stage) * kMostTargets + static_cast<size_t>(target)];
   }
-  std::array<std::atomic<int64_t>, 12 * kMostTargets> spent_{};
+  std::array<std::atomic<int64_t>, 13 * kMostTargets> spent_{};
 };
 
 /// Counts its own life, but for that of others which begin and end within it on the same thread: what a part
