@@ -8,6 +8,7 @@
 #include "lang/body_text.h"
 #include "lang/library.h"
 #include "lower/inline.h"
+#include "optimize/approximate.h"
 #include "optimize/exact.h"
 #include "optimize/optimize.h"
 
@@ -39,6 +40,14 @@ node tinted(vec3 tint in [0, 1], float cosine in [0, 1], bool on) -> (vec3 color
 }
 )"},
 };
+
+const Subject kSteep = {"steep", R"(
+/// A term that falls like a quotient, and has none.
+/// source: a test
+node steep(float x in [0, 1]) -> float in [0, 2] {
+    return exp2(-1.7 * log2(1 + 9 * x)) * sqrt(1 + 0.5 * sqrt(x + 0.1));
+}
+)"};
 
 lang::Library libraryOfText(const std::string& text) {
   auto library = lang::Library::fromFiles({{"t.node", text}});
@@ -138,6 +147,32 @@ TEST(Variants, AreOffByNoMoreThanTheySay) {
       // An error that is far from it says little.
       EXPECT_GE(off, front[i].outcome.error / 50) << text;
     }
+  }
+}
+
+/// What polynomials take many products for a quotient does at a lower cost, and keeps to its error.
+TEST(Variants, DivideWhereThatIsCheaper) {
+  const lang::Library plain = libraryOfText(kSteep.text);
+  const lang::NodeDecl& node = **plain.node(kSteep.name);
+  const ir::Module reference = moduleOfNode(node, "");
+  std::string text = kSteep.text;
+  std::vector<double> errors;
+  for (const double most : {1e-2, 3e-2}) {
+    const auto form = optimize::approximate(reference, optimize::families()[0], most);
+    ASSERT_TRUE(form) << most;
+    const auto body = lang::bodyText(form->module, node, "proved");
+    ASSERT_TRUE(body) << most;
+    EXPECT_NE(body->find(" / "), std::string::npos) << *body;
+    EXPECT_LE(form->error, most);
+    text += fmt::format("/// A form.\nvariant form{} {{\n{}}}\n", errors.size(), *body);
+    errors.push_back(form->error);
+  }
+  const lang::Library with = libraryOfText(text);
+  const lang::NodeDecl& tuned = **with.node(kSteep.name);
+  for (size_t i = 0; i < errors.size(); ++i) {
+    const double off = apart(tuned, reference, moduleOfNode(tuned, fmt::format("form{}", i)));
+    EXPECT_LE(off, errors[i]) << text;
+    EXPECT_GE(off, errors[i] / 10) << text;
   }
 }
 

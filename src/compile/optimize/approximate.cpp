@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "optimize/extract.h"
 #include "optimize/facts.h"
@@ -16,12 +17,18 @@ namespace {
 using ir::Op;
 using ir::Rate;
 
-constexpr size_t kMostDegree = 6;
 constexpr int kMostRounds = 16;
 /// Functions that are tried in a round, those first that may save most.
 constexpr size_t kMostTried = 24;
 /// Cycles that an approximation saves at least.
 constexpr double kLeastSaving = 0.9;
+
+/// Cycles that a quotient saves beside a polynomial, at least.
+constexpr double kCheaperForm = 0.5;
+
+/// In the order of what they cost.
+constexpr Shape kPolynomials[] = {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}, {6, 0, 0}, {7, 0, 0}};
+constexpr Shape kQuotients[] = {{0, 0, 1}, {0, 0, 2}, {1, 0, 1}, {2, 0, 1}, {0, 1, 2}, {1, 1, 2}};
 
 /// A plan that differs from the module's by approximations.
 struct State {
@@ -29,7 +36,7 @@ struct State {
   std::vector<double> own;  ///< of each node: what it is off beside what its operands are
 };
 
-/// What stands for a node: a polynomial of another one.
+/// What stands for a node: a function of another one.
 struct Change {
   Ref at = kNoRef, variable = kNoRef;
   Fit fit;
@@ -40,10 +47,11 @@ struct Change {
 
 class Approximation {
 public:
-  Approximation(const ir::Module& module, const Family& family, double error)
+  Approximation(const ir::Module& module, const Family& family, double error, bool quotients)
       : module_(module),
         family_(family),
         most_(error),
+        quotients_(quotients),
         counter_(module),
         proved_(module),
         faults_(ir::verify(module).size()) {
@@ -71,6 +79,7 @@ public:
           continue;
         }
         state_ = std::move(next);
+        divides_ |= !change.fit.divisor.empty();
         made = {std::move(module), change.error, change.cost, made.count + 1};
         taken = true;
         break;
@@ -80,6 +89,9 @@ public:
     if (made.count == 0) return std::nullopt;
     return made;
   }
+
+  /// Whether what was made has a quotient.
+  bool divides() const { return divides_; }
 
 private:
   const Plan& plan() const { return state_.found.plan; }
@@ -126,7 +138,7 @@ private:
       // None of those behind it saves more than what is there.
       if (pair.cost > best || tried++ >= kMostTried) break;
       const size_t before = all.size();
-      polynomials(pair.x, pair.at, all);
+      forms(pair.x, pair.at, all);
       if (all.size() == before)
         hopeless_.insert({plan().origin[pair.x], plan().origin[pair.at]});
       else
@@ -218,42 +230,66 @@ private:
     return nodes;
   }
 
-  void polynomials(Ref x, Ref at, std::vector<Change>& all) {
-    const Range domain = domainOf(x);
+  /// What is known of a function, which forms of it must keep to.
+  struct Kept {
+    bool unit, positive;
+  };
+
+  void forms(Ref x, Ref at, std::vector<Change>& all) {
     Curve curve(plan(), constants_, x, needed(at, x));
     const Ranges& real = state_.found.facts[at].real;
     const auto width = static_cast<size_t>(curve.width());
     const auto every = [&](auto holds) {
       return std::all_of(real.begin(), real.begin() + static_cast<ptrdiff_t>(width), holds);
     };
-    const bool unit = every([](const Range& r) { return r.lo >= 0 && r.hi <= 1; });
-    const bool positive = every([](const Range& r) { return r.lo >= 0; });
-    for (size_t degree = 1; degree <= kMostDegree; ++degree) {
-      Change change;
-      change.at = at;
-      change.variable = x;
-      change.fit.coefficients.assign(degree + 1, ir::Components{1, 1, 1, 1});
-      // Powers that are not there cost nothing, and signs are free: ones show what the sums take.
-      for (ir::Components& power : change.fit.coefficients) power.fill(0.75);
-      if (costOf(changed(state_, change).found.plan) > costOf(plan()) - kLeastSaving) return;
-      change.fit.error = sampledError(curve, domain, degree);
-      const State next = changed(state_, change);
-      if (!(errorOfOutputs(next.found.plan, next.found.facts, constants_, most_lights_, next.own) <= most_))
-        continue;
-      const std::optional<double> least = positive ? std::optional<double>(0) : std::nullopt;
-      std::optional<Fit> made = fit(curve, domain, degree, 1.2 * change.fit.error + 0x1p-20, std::nullopt);
-      if (!made) continue;
-      if (made->reached.lo < 0 && positive) {
-        change.clamped = unit;
-        if (!unit) made = fit(curve, domain, degree, 4 * change.fit.error + 0x1p-18, least);
-        if (!made) continue;
+    const Kept kept{every([](const Range& r) { return r.lo >= 0 && r.hi <= 1; }),
+                    every([](const Range& r) { return r.lo >= 0; })};
+    // The cheapest polynomial that keeps to the error, and a quotient where one is cheaper still.
+    const size_t before = all.size();
+    for (const std::span<const Shape> shapes :
+         {std::span<const Shape>(kPolynomials), std::span<const Shape>(kQuotients)}) {
+      for (const Shape& shape : shapes) {
+        if (shape.divisor > 0 && !quotients_) continue;
+        const double limit =
+            all.size() > before ? all.back().cost - kCheaperForm : costOf(plan()) - kLeastSaving;
+        Change change;
+        change.at = at;
+        change.variable = x;
+        // Powers that are not there cost nothing, and signs are free: these show what the sums take.
+        constexpr ir::Components kSome{0.75, 0.75, 0.75, 0.75};
+        change.fit.coefficients.assign(shape.terms, kSome);
+        if (shape.divisor > 0) {
+          change.fit.dividend.assign(shape.dividend + 1, kSome);
+          change.fit.dividend.back() = {1, 1, 1, 1};
+          change.fit.divisor.assign(shape.divisor + 1, kSome);
+          change.fit.divided = {0.5, 2, false};
+        }
+        if (costOf(changed(state_, change).found.plan) > limit) continue;
+        if (form(curve, shape, std::move(change), kept, all)) break;
       }
-      if (unit && made->reached.hi > 1) change.clamped = true;
-      change.fit = std::move(*made);
-      const size_t before = all.size();
-      add(std::move(change), all);
-      if (all.size() > before) return;
     }
+  }
+
+  /// Adds a form of that shape where it keeps to the error.
+  bool form(Curve& curve, const Shape& shape, Change change, const Kept& kept, std::vector<Change>& all) {
+    const Range domain = domainOf(change.variable);
+    change.fit.error = sampledError(curve, domain, shape);
+    const State next = changed(state_, change);
+    if (!(errorOfOutputs(next.found.plan, next.found.facts, constants_, most_lights_, next.own) <= most_))
+      return false;
+    const std::optional<double> least = kept.positive ? std::optional<double>(0) : std::nullopt;
+    std::optional<Fit> made = fit(curve, domain, shape, 1.2 * change.fit.error + 0x1p-20, std::nullopt);
+    if (!made) return false;
+    if (made->reached.lo < 0 && kept.positive) {
+      change.clamped = kept.unit;
+      if (!kept.unit) made = fit(curve, domain, shape, 4 * change.fit.error + 0x1p-18, least);
+      if (!made) return false;
+    }
+    if (kept.unit && made->reached.hi > 1) change.clamped = true;
+    change.fit = std::move(*made);
+    const size_t before = all.size();
+    add(std::move(change), all);
+    return all.size() > before;
   }
 
   /// A state with a change.
@@ -273,7 +309,7 @@ private:
       for (Ref at = 0; at < plan.nodes.size(); ++at) {
         if (!live_[at]) continue;
         if (at == change.at) {
-          polynomial(change);
+          approximation(change);
           continue;
         }
         Node node = plan.nodes[at];
@@ -347,16 +383,42 @@ private:
       return push(node, factsOf(node), ir::kNoValue, 0, off);
     }
 
-    /// By Horner; what stands for the node has the facts of what it is nearly equal to.
-    void polynomial(const Change& change) {
-      const Node& node = from_.found.plan.nodes[change.at];
-      const std::vector<ir::Components>& powers = change.fit.coefficients;
-      Ref sum = number(node.type, powers.back());
+    /// By Horner. A last number that is 1 is no product.
+    Ref horner(ir::Type type, const std::vector<ir::Components>& powers, Ref variable) {
+      const bool one = powers.size() > 1 && powers.back() == ir::Components{1, 1, 1, 1};
+      Ref sum = one ? variable : number(type, powers.back());
       for (size_t k = powers.size() - 1; k-- > 0;) {
-        const Ref product = operation(Op::Mul, node.type, {sum, place_[change.variable]});
-        sum = operation(Op::Add, node.type, {product, number(node.type, powers[k])});
+        if (!one || k + 2 < powers.size()) sum = operation(Op::Mul, type, {sum, variable});
+        sum = operation(Op::Add, type, {sum, number(type, powers[k])});
       }
-      ir::Interval reached{change.fit.reached.lo, change.fit.reached.hi};
+      return sum;
+    }
+
+    /// The quotient of a form, whose divisor has the facts that are proved.
+    Ref quotient(ir::Type type, const Fit& fit, Ref variable) {
+      const Ref divisor = horner(type, fit.divisor, variable);
+      to_.found.plan.proved[divisor] = {fit.divided.lo, fit.divided.hi};
+      Facts& facts = to_.found.facts[divisor];
+      for (size_t c = 0; c < 4; ++c) {
+        facts.real[c] = fit.divided;
+        facts.lit[c] = fit.divided;
+      }
+      const Ref reciprocal = operation(Op::Div, type, {divisor});
+      if (fit.dividend.size() == 1) return reciprocal;
+      return operation(Op::Mul, type, {horner(type, fit.dividend, variable), reciprocal});
+    }
+
+    /// What stands for the node has the facts of what it is nearly equal to.
+    void approximation(const Change& change) {
+      const Node& node = from_.found.plan.nodes[change.at];
+      const Fit& fit = change.fit;
+      const Ref variable = change.variable == kNoRef ? kNoRef : place_[change.variable];
+      Ref sum = fit.coefficients.empty() ? kNoRef : horner(node.type, fit.coefficients, variable);
+      if (!fit.divisor.empty()) {
+        const Ref ratio = quotient(node.type, fit, variable);
+        sum = sum == kNoRef ? ratio : operation(Op::Add, node.type, {ratio, sum});
+      }
+      ir::Interval reached{fit.reached.lo, fit.reached.hi};
       if (change.clamped) {
         sum = operation(Op::Clamp, node.type,
                         {sum, number(ir::Type::Float, {}), number(ir::Type::Float, {1, 1, 1, 1})});
@@ -369,10 +431,10 @@ private:
       Facts facts = from_.found.facts[change.at];
       for (size_t c = 0; c < 4; ++c) facts.lit[c] = hull(facts.lit[c], {reached.lo, reached.hi, false});
       to_.found.facts[sum] = facts;
-      to_.own[sum] = change.fit.error;
+      to_.own[sum] = fit.error;
       // Clamps say what they are by themselves.
-      if (powers.size() > 1 && !change.clamped)
-        plan.proved[sum] = {reached.lo - change.fit.rounding, reached.hi + change.fit.rounding};
+      if (change.variable != kNoRef && !change.clamped)
+        plan.proved[sum] = {reached.lo - fit.rounding, reached.hi + fit.rounding};
     }
 
     const Approximation& of_;
@@ -385,6 +447,8 @@ private:
   const ir::Module& module_;
   const Family& family_;
   double most_;
+  bool quotients_;
+  bool divides_ = false;
   Counter counter_;
   Proved proved_;
   size_t faults_;  ///< a node by itself has outputs of types that are no colours
@@ -398,7 +462,15 @@ private:
 }  // namespace
 
 std::optional<Approximated> approximate(const ir::Module& module, const Family& family, double error) {
-  return Approximation(module, family, error).run();
+  Approximation any(module, family, error, true);
+  std::optional<Approximated> made = any.run();
+  if (!made || !any.divides()) return made;
+  // What is taken first is not always what ends best: with quotients nothing is worse than without them.
+  std::optional<Approximated> powers = Approximation(module, family, error, false).run();
+  if (!powers) return made;
+  const bool worse =
+      powers->cycles != made->cycles ? powers->cycles < made->cycles : powers->error < made->error;
+  return worse ? powers : made;
 }
 
 }  // namespace lacquer::optimize

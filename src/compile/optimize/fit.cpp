@@ -166,21 +166,31 @@ std::vector<ir::Components> interpolate(Curve& curve, const Range& domain, size_
   return result;
 }
 
+std::optional<Form> first(Curve& curve, const Range& domain, const Shape& shape) {
+  if (shape.divisor > 0) return quotient(curve, domain, shape);
+  return Form{interpolate(curve, domain, shape.terms - 1), {}, {}};
+}
+
 double valueAt(const std::vector<ir::Components>& coefficients, size_t c, double x) {
   double sum = 0;
   for (size_t k = coefficients.size(); k-- > 0;) sum = sum * x + coefficients[k][c];
   return sum;
 }
 
+double valueAt(const Form& form, size_t c, double x) {
+  const double sum = valueAt(form.coefficients, c, x);
+  return form.divisor.empty() ? sum : sum + valueAt(form.dividend, c, x) / valueAt(form.divisor, c, x);
+}
+
 /// At points that lie close at the ends, where errors of roots have their peaks.
-double sampled(Curve& curve, const Range& domain, const std::vector<ir::Components>& coefficients) {
+double sampled(Curve& curve, const Range& domain, const Form& form) {
   constexpr int kPoints = 48;
   double most = 0;
   const auto look = [&](double u) {
     const double x = domain.lo + (domain.hi - domain.lo) * u;
     const Curve::Box& box = curve.over(exactly(x));
     for (size_t c = 0; c < static_cast<size_t>(curve.width()); ++c) {
-      const double off = std::abs(middle(box.value[c]) - valueAt(coefficients, c, x));
+      const double off = std::abs(middle(box.value[c]) - valueAt(form, c, x));
       most = off <= most ? most : std::isnan(off) ? kEndless : off;
     }
   };
@@ -193,38 +203,88 @@ double sampled(Curve& curve, const Range& domain, const std::vector<ir::Componen
   return most;
 }
 
-/// What Horner's sums and products in float32 are off.
-double roundings(const std::vector<ir::Components>& coefficients, const Range& domain) {
-  double most = 0;
-  for (size_t c = 0; c < 4; ++c) {
-    double sum = 0;
-    double power = 1;
-    for (const ir::Components& coefficient : coefficients) {
-      sum += std::abs(coefficient[c]) * power;
-      power *= magnitudeOf(domain);
-    }
-    most = std::max(most, sum);
+/// What Horner's sums and products in float32 are off, of one component at numbers up to `x`.
+double roundings(const std::vector<ir::Components>& coefficients, size_t c, double x) {
+  double sum = 0;
+  double power = 1;
+  for (const ir::Components& coefficient : coefficients) {
+    sum += std::abs(coefficient[c]) * power;
+    power *= x;
   }
-  return most * (2 * static_cast<double>(coefficients.size()) + 1) * 0x1p-24;
+  return sum * (2 * static_cast<double>(coefficients.size()) + 1) * 0x1p-24;
+}
+
+/// Small ones, so that what is reached is told closely.
+std::vector<Range> boxesOf(const Range& domain) {
+  constexpr int kBoxes = 64;
+  std::vector<Range> boxes;
+  for (int i = kBoxes; i-- > 0;) {
+    const double step = (domain.hi - domain.lo) / kBoxes;
+    boxes.push_back({domain.lo + i * step, i + 1 == kBoxes ? domain.hi : domain.lo + (i + 1) * step, false});
+  }
+  return boxes;
+}
+
+/// What a form in float32 is off; infinite where its divisor may come near 0. What that can be is added to
+/// `divided`.
+double roundings(const Form& form, size_t width, const Range& domain, Range& divided) {
+  constexpr double kReciprocal = 4 * 0x1p-23;  // of a division, 2.5 units, and of a product with it
+  double most = 0;
+  const double largest = magnitudeOf(domain);
+  for (size_t c = 0; c < width; ++c) most = std::max(most, roundings(form.coefficients, c, largest));
+  if (form.divisor.empty()) return most;
+  const analysis::RangeMath m(analysis::Arithmetic::Real);
+  for (const Range& x : boxesOf(domain)) {
+    for (size_t c = 0; c < width; ++c) {
+      const double off = roundings(form.divisor, c, largest);
+      const Range exact = horner(m, form.divisor, c, x, false);
+      const Range divisor = m.widened(exact, 0, off);
+      // A divisor that is mostly rounding is none, nor one whose reciprocal is flushed.
+      const double least = std::min(std::abs(divisor.lo), std::abs(divisor.hi));
+      if (divisor.nan || divisor.contains(0) || !(least > 4 * off) || !(least > 0x1p-60) ||
+          !(magnitudeOf(divisor) < 0x1p60))
+        return kEndless;
+      divided = {std::min(divided.lo, divisor.lo), std::max(divided.hi, divisor.hi), false};
+      const double over = magnitudeOf(horner(m, form.dividend, c, x, false));
+      const double ratio = over / least;
+      const double quotient = ratio * (off / least + kReciprocal) +
+                              (form.dividend.size() > 1 ? roundings(form.dividend, c, largest) / least : 0);
+      const double sum = form.coefficients.empty()
+                             ? 0
+                             : (ratio + magnitudeOf(horner(m, form.coefficients, c, x, false))) * 0x1p-23;
+      most = std::max(most, roundings(form.coefficients, c, largest) + 1.01 * quotient + sum);
+    }
+  }
+  return divided.contains(0) ? kEndless : most;
+}
+
+/// A form and its derivative over a range, for one component.
+struct FormBox {
+  Range value, slope;
+};
+FormBox formOver(const analysis::RangeMath& m, const Form& form, size_t c, const Range& x) {
+  FormBox box{horner(m, form.coefficients, c, x, false), horner(m, form.coefficients, c, x, true)};
+  if (form.divisor.empty()) return box;
+  const Range n = horner(m, form.dividend, c, x, false);
+  const Range d = horner(m, form.divisor, c, x, false);
+  const Range dn = horner(m, form.dividend, c, x, true);
+  const Range dd = horner(m, form.divisor, c, x, true);
+  box.value = m.add(box.value, m.div(n, d));
+  box.slope = m.add(box.slope, m.div(m.sub(m.mul(dn, d), m.mul(n, dd)), m.square(d)));
+  return box;
 }
 
 }  // namespace
 
-double sampledError(Curve& curve, const Range& domain, size_t degree) {
-  return sampled(curve, domain, interpolate(curve, domain, degree));
+double sampledError(Curve& curve, const Range& domain, const Shape& shape) {
+  const std::optional<Form> form = first(curve, domain, shape);
+  return form ? sampled(curve, domain, *form) : kEndless;
 }
 
-bool prove(Curve& curve, const Range& domain, const std::vector<ir::Components>& coefficients, double most,
-           Range& reached) {
+bool prove(Curve& curve, const Range& domain, const Form& form, double most, Range& reached) {
   constexpr size_t kMostBoxes = 8000;
   const analysis::RangeMath m(analysis::Arithmetic::Real);
-  // Small ones from the start, so that what is reached is told closely.
-  constexpr int kFirst = 64;
-  std::vector<Range> open;
-  for (int i = kFirst; i-- > 0;) {
-    const double step = (domain.hi - domain.lo) / kFirst;
-    open.push_back({domain.lo + i * step, i + 1 == kFirst ? domain.hi : domain.lo + (i + 1) * step, false});
-  }
+  std::vector<Range> open = boxesOf(domain);
   size_t looked = 0;
   while (!open.empty()) {
     const Range x = open.back();
@@ -237,13 +297,15 @@ bool prove(Curve& curve, const Range& domain, const std::vector<ir::Components>&
     bool kept = true;
     Range here{kEndless, -kEndless, false};
     for (size_t c = 0; c < static_cast<size_t>(curve.width()) && kept; ++c) {
-      const Range at = horner(m, coefficients, c, exactly(mid), false);
-      const Range tangent = horner(m, coefficients, c, x, true);
-      const Range p =
-          meet(horner(m, coefficients, c, x, false), m.add(at, m.mul(tangent, {-half, half, false})));
+      const Range at = formOver(m, form, c, exactly(mid)).value;
+      const FormBox over = formOver(m, form, c, x);
+      // No number where the divisor may be 0: then nothing is kept until the box is smaller.
+      const Range p = over.value.nan || over.slope.nan
+                          ? over.value
+                          : meet(over.value, m.add(at, m.mul(over.slope, {-half, half, false})));
       const double direct = magnitudeOf(m.sub(box.value[c], p));
-      const double center = magnitudeOf(m.sub(at_middle[c], horner(m, coefficients, c, exactly(mid), false)));
-      const double lean = magnitudeOf(m.sub(box.slope[c], tangent));
+      const double center = magnitudeOf(m.sub(at_middle[c], at));
+      const double lean = magnitudeOf(m.sub(box.slope[c], over.slope));
       const double by_slope = m.add(exactly(center), m.mul(exactly(lean), exactly(half))).hi;
       // A product of 0 and infinity is no number, and proves nothing.
       kept = direct <= most || by_slope <= most;
@@ -263,20 +325,24 @@ bool prove(Curve& curve, const Range& domain, const std::vector<ir::Components>&
   return true;
 }
 
-std::optional<Fit> fit(Curve& curve, const Range& domain, size_t degree, double most,
+std::optional<Fit> fit(Curve& curve, const Range& domain, const Shape& shape, double most,
                        std::optional<double> least) {
   Fit made;
-  made.coefficients = interpolate(curve, domain, degree);
-  const double rounding = roundings(made.coefficients, domain);
+  const std::optional<Form> begin = first(curve, domain, shape);
+  if (!begin) return std::nullopt;
+  static_cast<Form&>(made) = *begin;
+  made.divided = {kEndless, -kEndless, false};
+  const double rounding = roundings(made, static_cast<size_t>(curve.width()), domain, made.divided);
   // A little more than is seen, so that few boxes show it.
-  double claimed = 1.05 * sampled(curve, domain, made.coefficients) + rounding / 4;
+  double claimed = 1.05 * sampled(curve, domain, made) + rounding / 4;
   constexpr int kLifts = 4;
   for (int lift = 0; lift <= kLifts && claimed + rounding <= most; ++lift) {
     made.reached = {kEndless, -kEndless, false};
     made.error = claimed + rounding;
     made.rounding = rounding;
-    if (!prove(curve, domain, made.coefficients, claimed, made.reached)) return std::nullopt;
+    if (!prove(curve, domain, made, claimed, made.reached)) return std::nullopt;
     if (!least || made.reached.lo >= *least + rounding) return made;
+    if (made.coefficients.empty()) return std::nullopt;
     const double by = 1.05 * (*least - made.reached.lo) + 3 * rounding;
     for (double& x : made.coefficients[0]) x = static_cast<double>(static_cast<float>(x + by));
     claimed += 1.01 * by;

@@ -1,5 +1,5 @@
-// Polynomials in the place of functions of one number, with errors that are proved: by intervals over boxes
-// that are halved until each keeps what is claimed.
+// Polynomials and quotients of them in the place of functions of one number, with errors that are proved: by
+// intervals over boxes that are halved until each keeps what is claimed.
 #pragma once
 
 #include <optional>
@@ -34,24 +34,41 @@ private:
   std::vector<Box> boxes_;  ///< by node of the plan
 };
 
-struct Fit {
-  std::vector<ir::Components> coefficients;  ///< of each power, floats, the constant first
-  double error = 0;                          ///< of a component, at most, evaluated by Horner in float32
-  double rounding = 0;                       ///< the part of it that is rounding
-  Range reached{};                           ///< of all components, in real arithmetic
+/// How many terms a form has: a polynomial of `terms` coefficients, and where `divisor` is more than 0 a
+/// quotient beside it, whose divisor is of that degree and whose dividend of a lower one, 0 or 1.
+struct Shape {
+  size_t terms = 1;
+  size_t dividend = 0, divisor = 0;
 };
 
-/// A polynomial of that degree over a domain that is finite. Where the function is never below `least` the
-/// polynomial is not either. Nothing where an error of at most `most` cannot be proved.
-std::optional<Fit> fit(Curve& curve, const Range& domain, size_t degree, double most,
+/// A polynomial and a quotient, whose coefficients are floats, the constant first. The last one of a dividend
+/// is 1, so that it costs nothing; a polynomial alone has no divisor.
+struct Form {
+  std::vector<ir::Components> coefficients;
+  std::vector<ir::Components> dividend, divisor;
+};
+
+struct Fit : Form {
+  double error = 0;     ///< of a component, at most, evaluated by Horner in float32
+  double rounding = 0;  ///< the part of it that is rounding
+  Range reached{};      ///< of all components, in real arithmetic
+  Range divided{};      ///< what the divisor is in float32, never 0
+};
+
+/// A form of that shape over a domain that is finite. Where the function is never below `least` the form is
+/// not either. Nothing where an error of at most `most` cannot be proved, or where the divisor may be 0.
+std::optional<Fit> fit(Curve& curve, const Range& domain, const Shape& shape, double most,
                        std::optional<double> least);
 
-/// The largest error of the polynomial that fit() begins with, at some points: no proof.
-double sampledError(Curve& curve, const Range& domain, size_t degree);
+/// The largest error of the form that fit() begins with, at some points: no proof.
+double sampledError(Curve& curve, const Range& domain, const Shape& shape);
 
-/// For an error of these coefficients over the domain: whether it is at most `most` everywhere. What the
-/// polynomial can be is added to `reached`.
-bool prove(Curve& curve, const Range& domain, const std::vector<ir::Components>& coefficients, double most,
-           Range& reached);
+/// For an error of this form over the domain: whether it is at most `most` everywhere. What the form can be
+/// is added to `reached`.
+bool prove(Curve& curve, const Range& domain, const Form& form, double most, Range& reached);
+
+/// The quotient of polynomials of that shape which is off least, nearly; its numbers are rounded to floats.
+/// Nothing where none is found.
+std::optional<Form> quotient(Curve& curve, const Range& domain, const Shape& shape);
 
 }  // namespace lacquer::optimize

@@ -219,7 +219,10 @@ std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
     // Of the plain form other functions of one number are left than of the cheapest one.
     for (const ir::Module* from : {&exact.module, &module}) {
       std::optional<Approximated> made = approximate(*from, family, error);
-      if (!made || !(made->cycles < front.back().outcome.cycles - kCheaper)) continue;
+      if (!made) continue;
+      const Outcome& last = front.back().outcome;
+      const bool closer = made->cycles < last.cycles + kCheaper && made->error < last.error;
+      if (!(made->cycles < last.cycles - kCheaper) && !closer) continue;
       const double growth = from == &module ? 1 : exact.outcome.growth;
       const Outcome outcome{exact.outcome.plain, made->cycles, growth, made->error, made->count};
       // What is cheaper and off by less beats those before it.
