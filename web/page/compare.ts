@@ -2,6 +2,7 @@
 import type { GraphJson, Options } from '../src/index';
 import type { Document } from './document';
 import { h } from './dom';
+import { list } from '../src/json';
 
 /** Parsed from the value of the page's selection. */
 export type Other = { kind: 'profile'; name: string } | { kind: 'material'; index: number } | { kind: 'simplify'; word: string };
@@ -55,4 +56,13 @@ export function fillOthers(select: HTMLSelectElement, of: Document, graph: Graph
   ];
   select.replaceChildren(h('option', { value: '' }, 'nothing'), ...groups.filter(({ childElementCount }) => childElementCount > 0));
   if ([...select.options].some(({ value }) => value === chosen)) select.value = chosen;
+}
+
+/** Offers the file's variants, where it has some that something is drawn in. */
+export function fillVariants(select: HTMLSelectElement, of: Document): void {
+  const named = list(of.json.extensions?.KHR_materials_variants?.variants);
+  const used = new Set(of.drawables.flatMap(({ variants }) => [...(variants?.keys() ?? [])]));
+  const names = named.flatMap((each, i) => (used.has(i) ? [h('option', { value: i }, typeof each?.name === 'string' && each.name ? each.name : `(variant ${i})`)] : []));
+  select.replaceChildren(h('option', { value: '' }, 'The file\'s own'), ...names);
+  select.parentElement!.hidden = names.length === 0;
 }

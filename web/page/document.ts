@@ -12,6 +12,10 @@ export interface Input {
   resources: Map<string, Uint8Array>;
 }
 
+/** What the page's shaders do without: each instance is placed as a mesh of its own, what is stored as integers is read as floats,
+ * and skins and morph targets rest. */
+const kPlaced: Attribute[] = ['INSTANCES', 'QUANTIZED', 'JOINTS_0', 'JOINTS_1', 'MORPH_TARGETS'];
+
 /** All that an edit may change of one material. */
 interface Snapshot {
   index: number;
@@ -26,6 +30,8 @@ interface Snapshot {
 export class Document {
   readonly file: GltfFile;
   readonly drawables: Drawable[];
+  /** The drawables' materials outside of any variant. */
+  private readonly plain: number[];
   readonly uses: Attribute[][] = [];
   readonly names: string[] = [];
   /** A node file of the document's own, which its graphs may use. */
@@ -57,11 +63,12 @@ export class Document {
     const scene = lacquer.scene(input.bytes, input.name);
     for (let i = 0; i < scene.materialCount; ++i) {
       this.names.push(scene.materialName(i));
-      this.uses.push(scene.uses(i)[0] ?? ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1']);
+      this.uses.push(scene.uses(i)[0]?.filter((name) => !kPlaced.includes(name)) ?? ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1']);
     }
     scene.free();
     this.file = openGltf(input.name, input.bytes, input.resources);
     this.drawables = geometry(this.file);
+    this.plain = this.drawables.map(({ material }) => material);
     this.own = { textures: list(this.json.textures).length, images: list(this.json.images).length };
     this.takeExtras(lacquer);
   }
@@ -194,6 +201,11 @@ export class Document {
     this.keep(`layout ${performance.now()}`);
     this.layouts.set(this.material, text);
     this.settle();
+  }
+
+  /** Draws with the materials of a variant, by its number; with none, with the file's own. */
+  vary(variant: string): void {
+    this.drawables.forEach((drawable, i) => (drawable.material = (variant === '' ? undefined : drawable.variants?.get(Number(variant))) ?? this.plain[i]));
   }
 
   // ---- the way back

@@ -8,6 +8,7 @@ import { Drafts, kMostBytes, type Draft } from './drafts';
 import type { Page } from './main';
 import { inputFrom, shared } from './share';
 import { kPictures } from './textures';
+import { missing } from '../src/gltf';
 
 /** An address with the names of a file that the page has and of one of its materials: #open=FILE/MATERIAL. */
 const kNamed = '#open=';
@@ -83,8 +84,15 @@ export class Files {
     if (!main) return;
     const resources = new Map<string, Uint8Array>();
     for (const file of files) if (file !== main) resources.set(file.name, await bytesOf(file));
-    await this.replace({ name: main.name, bytes: await bytesOf(main), resources });
+    if (await this.replace({ name: main.name, bytes: await bytesOf(main), resources })) this.tellMissing();
     await page.others;
+  }
+
+  private tellMissing(): void {
+    const { file } = this.page.document!;
+    const named = missing(file);
+    const [first, ...more] = named;
+    if (named.length > 0) this.page.noteMore(`${file.name} names ${named.length === 1 ? `${first}, which is` : `${[first, ...more.slice(0, 9)].join(', ')}${named.length > 10 ? ` and ${named.length - 10} more, which are` : ', which are'}`} not there: drop all of them at once`);
   }
 
   /** Opens a file in the place of the one that is there: asks first where that has edits which no file has. */

@@ -3,7 +3,7 @@
 import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
 import { Around } from './around';
 import { connectCode, hexOf, selectTerm, showCode } from './code';
-import { fillOthers, optionsOf, parseOther } from './compare';
+import { fillOthers, fillVariants, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
 import { costTable, errorTable, type Costs, type Errors } from './costs';
@@ -127,6 +127,7 @@ export class Page {
     viewport.useBall = of.drawables.length === 0;
     byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
+    fillVariants(byId<HTMLSelectElement>('variant'), of);
     viewport.setScene(of.drawables);
     this.othersOf = '';
     this.around.open();
@@ -550,6 +551,11 @@ export class Page {
     this.showMessages();
   }
 
+  noteMore(text: string): void {
+    this.notice.push(messageOf(text, 'note'));
+    this.showMessages();
+  }
+
   private showMessages(): void {
     const all = [...this.notice, ...this.messages];
     if (this.isNew('messages', JSON.stringify(all)))
@@ -655,6 +661,12 @@ export class Page {
     this.on('shape', 'change', () => {
       this.viewport.useBall = byId<HTMLSelectElement>('shape').value === 'ball';
       this.viewport.fit();
+    });
+    this.on('variant', 'change', () => {
+      if (!this.of) return;
+      this.of.vary(byId<HTMLSelectElement>('variant').value);
+      this.compileOthers();
+      this.viewport.redraw();
     });
     this.on('whole', 'click', () => this.viewport.fit());
     this.on('save-picture', 'click', () => void this.savePicture().catch((error: unknown) => this.fail(error)));

@@ -32,6 +32,8 @@ export interface Drawable {
   normal: Mat4;
   /** The model swaps front and back faces. */
   mirrored?: boolean;
+  /** The materials that it has in variants (KHR_materials_variants), by their numbers. */
+  variants?: ReadonlyMap<number, number>;
   /** As floats, by the attributes' names. Primitives of one mesh at several places have one map, and those that name one
    * accessor, its one array. */
   attributes: Map<string, Numbers>;
@@ -41,6 +43,7 @@ export interface Drawable {
 
 /** Of a file: more, which a few kilobytes can ask for, are left out. */
 const kMostDrawables = 100_000;
+const kMostVariants = 10_000;
 /** Numbers that are read of a file's accessors, or made for its primitives: 256 MB. */
 const kMostNumbers = 2 ** 26;
 
@@ -188,6 +191,12 @@ function resource(file: GltfFile, uri: string): Uint8Array | null {
   return file.resources.get(plain) ?? file.resources.get(last) ?? null;
 }
 
+/** What a file names, and is not there. */
+export function missing(file: GltfFile): string[] {
+  const uris = [...list(file.json.buffers), ...list(file.json.images)].map((each) => each?.uri);
+  return [...new Set(uris)].filter((uri) => typeof uri === 'string' && !uri.startsWith('data:') && !resource(file, uri));
+}
+
 /** The bytes of a buffer view; null where they are not all there. */
 export function bufferView(file: GltfFile, index: number): Uint8Array | null {
   const view = item(file.json.bufferViews, index);
@@ -317,7 +326,7 @@ function triangles(mode: number, corners: Uint32Array): Uint32Array | null {
   return made;
 }
 
-type Shape = Pick<Drawable, 'material' | 'attributes' | 'indices'>;
+type Shape = Pick<Drawable, 'material' | 'variants' | 'attributes' | 'indices'>;
 
 function primitive(from: Reader, of: any): Shape | null {
   const material = of?.material ?? -1;
@@ -341,7 +350,29 @@ function primitive(from: Reader, of: any): Shape | null {
     if (!from.takes(positions.length)) return null;
     attributes.set('NORMAL', { data: facetNormals(positions, indices), size: 3 });
   }
-  return { material, attributes, indices };
+  const variants = variantsOf(of);
+  return { material, attributes, indices, ...(variants.size > 0 && { variants }) };
+}
+
+function variantsOf(primitive: any): Map<number, number> {
+  const found = new Map<number, number>();
+  for (const mapping of list(primitive.extensions?.KHR_materials_variants?.mappings)) {
+    if (!isCount(mapping?.material)) continue;
+    for (const variant of list(mapping.variants)) if (isCount(variant) && found.size < kMostVariants) found.set(variant, mapping.material);
+  }
+  return found;
+}
+
+/** Where a node's mesh is (EXT_mesh_gpu_instancing): at the node, or at each of its instances; null where they cannot be read. */
+function placesOf(from: Reader, node: any, world: Mat4): Mat4[] | null {
+  const attributes = node.extensions?.EXT_mesh_gpu_instancing?.attributes;
+  if (typeof attributes !== 'object' || attributes === null) return [world];
+  const [t, r, s] = (['TRANSLATION', 'ROTATION', 'SCALE'] as const).map((name) => (attributes[name] === undefined ? undefined : from.numbers(attributes[name])));
+  if ([t, r, s].includes(null) || (t && t.size !== 3) || (r && r.size !== 4) || (s && s.size !== 3)) return null;
+  const counts = [t, r, s].flatMap((each) => (each ? [each.data.length / each.size] : []));
+  const count = Math.min(counts.length > 0 ? Math.min(...counts) : 0, kMostDrawables);
+  const at = (of: Numbers | null | undefined, i: number, otherwise: number[]) => (of ? [...of.data.subarray(of.size * i, of.size * (i + 1))] : otherwise);
+  return Array.from({ length: count }, (_, i) => multiply(world, compose(at(t, i, [0, 0, 0]), at(r, i, [0, 0, 0, 1]), at(s, i, [1, 1, 1]))));
 }
 
 /** The sum of the triangles' normals at each vertex. */
@@ -397,8 +428,11 @@ export function geometry(file: GltfFile): Drawable[] {
     if (!mesh || room === 0) return;
     // What is left out of a mesh is not come upon again at its other nodes.
     const shapes = once(made, mesh, () => list(mesh.primitives).map((of) => primitive(from, of)).filter((shape) => shape !== null));
-    const normal = normalMatrix(model);
-    for (const shape of shapes.slice(0, room)) found.push({ model, normal, ...shape });
+    for (const place of placesOf(from, node, model) ?? []) {
+      if (!place.every(isNear)) continue;
+      const normal = normalMatrix(place);
+      for (const shape of shapes.slice(0, kMostDrawables - found.length)) found.push({ model: place, normal, ...shape });
+    }
   });
   return found;
 }

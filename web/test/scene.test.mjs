@@ -186,3 +186,50 @@ test('the picture is saved as PNG', () =>
     }, png.toString('base64'));
     assert.deepEqual(there, { width, height, middle });
   }, { size: kSmall }));
+
+test('instances stand in their places, and a variant is drawn with its materials', () =>
+  open([], async (page) => {
+    const file = JSON.parse(squares([{ at: [0, 0, 0], material: shining(1, 0, 0) }, { at: [0, 0, -9], material: shining(0, 1, 0) }]));
+    const places = Buffer.from(new Float32Array([-1.2, 0, 0, 1.2, 0, 0]).buffer);
+    file.buffers.push({ byteLength: places.length, uri: `data:application/octet-stream;base64,${places.toString('base64')}` });
+    file.bufferViews.push({ buffer: 1, byteLength: places.length });
+    file.accessors.push({ bufferView: 3, componentType: 5126, count: 2, type: 'VEC3' });
+    file.scenes[0].nodes = [0];
+    file.nodes[0].extensions = { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: 3 } } };
+    file.extensions = { KHR_materials_variants: { variants: [{ name: 'red' }, { name: 'green' }] } };
+    file.meshes[0].primitives[0].extensions = { KHR_materials_variants: { mappings: [{ material: 1, variants: [1] }, { material: 0, variants: [0] }] } };
+    file.extensionsUsed = ['EXT_mesh_gpu_instancing', 'KHR_materials_variants'];
+    await drop(page, [['many.gltf', Buffer.from(JSON.stringify(file))]]);
+    await page.selectOption('#environment', 'Dark');
+    await page.selectOption('#lamps', 'none');
+    await settled(page);
+    const { width, height } = await page.locator('#viewport').boundingBox();
+    const x = (0.38 * height) / width;
+    const [left, middle, right] = await seen(page, [[-x, 0], [0, 0], [x, 0]]);
+    assert.ok(left[0] > 200 && right[0] > 200 && Math.abs(middle[0] - middle[1]) < 5, `${[left, middle, right]}`);
+    await page.selectOption('#variant', { label: 'green' });
+    await settled(page);
+    const [there] = await seen(page, [[x, 0]]);
+    assert.ok(there[1] > 200 && there[0] < 100, `${there}`);
+    await page.selectOption('#variant', { index: 0 });
+    await settled(page);
+    assert.deepEqual((await seen(page, [[x, 0]]))[0], right);
+    await drop(page, [['core.gltf', squares([{ at: [0, 0, 0], material: {} }])]]);
+    assert.ok(await page.isHidden('#variant'));
+  }, { size: kSmall }));
+
+test('files that are dropped together belong together; what is missing is listed', () =>
+  open([], async (page) => {
+    const file = JSON.parse(squares([{ at: [0, 0, 0], material: shining(1, 0, 0) }]));
+    const bytes = Buffer.from(file.buffers[0].uri.split(',')[1], 'base64');
+    file.buffers[0].uri = 'all%20of.bin';
+    file.images = [{ uri: 'pictures/a.png' }];
+    const text = Buffer.from(JSON.stringify(file));
+    await drop(page, [['apart.gltf', text]]);
+    assert.match(await page.textContent('#status'), /apart\.gltf names all%20of\.bin, pictures\/a\.png, which are not there: drop all of them at once/);
+    await drop(page, [['all of.bin', bytes], ['apart.gltf', text]]);
+    assert.match(await page.textContent('#status'), /names pictures\/a\.png, which is not there/);
+    assert.equal(await page.evaluate(() => window.lacquerPage.document.drawables.length), 1);
+    await drop(page, [['a.png', Buffer.from('a picture')], ['all of.bin', bytes], ['apart.gltf', text]]);
+    assert.equal(await page.textContent('#status'), '');
+  }, { size: kSmall }));
