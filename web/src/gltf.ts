@@ -371,6 +371,8 @@ function placesOf(from: Reader, node: any, world: Mat4): Mat4[] | null {
   if ([t, r, s].includes(null) || (t && t.size !== 3) || (r && r.size !== 4) || (s && s.size !== 3)) return null;
   const counts = [t, r, s].flatMap((each) => (each ? [each.data.length / each.size] : []));
   const count = Math.min(counts.length > 0 ? Math.min(...counts) : 0, kMostDrawables);
+  // Many nodes may name one accessor.
+  if (!from.takes(16 * count)) return null;
   const at = (of: Numbers | null | undefined, i: number, otherwise: number[]) => (of ? [...of.data.subarray(of.size * i, of.size * (i + 1))] : otherwise);
   return Array.from({ length: count }, (_, i) => multiply(world, compose(at(t, i, [0, 0, 0]), at(r, i, [0, 0, 0, 1]), at(s, i, [1, 1, 1]))));
 }
@@ -428,6 +430,7 @@ export function geometry(file: GltfFile): Drawable[] {
     if (!mesh || room === 0) return;
     // What is left out of a mesh is not come upon again at its other nodes.
     const shapes = once(made, mesh, () => list(mesh.primitives).map((of) => primitive(from, of)).filter((shape) => shape !== null));
+    if (shapes.length === 0) return;
     for (const place of placesOf(from, node, model) ?? []) {
       if (!place.every(isNear)) continue;
       const normal = normalMatrix(place);
