@@ -276,5 +276,25 @@ TEST(Fallback, WrongOptionsAreToldOf) {
   EXPECT_EQ(errorsOf(messages), "fallback-plan");
 }
 
+/// Their numbers are no property's.
+TEST(Fallback, SurfacesOfMaterialXHaveOne) {
+  constexpr const char* kText = R"(<materialx version="1.39">
+  <standard_surface name="a" type="surfaceshader"><input name="base_color" type="color3" value="0.1,0.5,0.3"/></standard_surface>
+  <UsdPreviewSurface name="b" type="surfaceshader"><input name="diffuseColor" type="color3" value="0.1,0.2,0.3"/></UsdPreviewSurface>
+  <standard_surface name="c" type="surfaceshader"><input name="metalness" type="float" value="0.25"/></standard_surface>
+  <surfacematerial name="A" type="material"><input name="surfaceshader" type="surfaceshader" nodename="a"/></surfacematerial>
+  <surfacematerial name="B" type="material"><input name="surfaceshader" type="surfaceshader" nodename="b"/></surfacematerial>
+  <surfacematerial name="C" type="material"><input name="surfaceshader" type="surfaceshader" nodename="c"/></surfacematerial>
+</materialx>)";
+  const Options options = withFallback();
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kText, "three.mtlx", options, messages);
+  ASSERT_TRUE(scene) << errorsOf(messages);
+  const Contract contract = made(scene, options);
+  ASSERT_EQ(contract.materials.size(), 3U);
+  EXPECT_LT(fallbacksOf(contract).size(), 3U);
+  for (const ContractMaterial& material : contract.materials) EXPECT_FALSE(material.uses.empty());
+}
+
 }  // namespace
 }  // namespace lacquer::test

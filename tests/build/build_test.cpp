@@ -407,6 +407,43 @@ TEST_F(Build, LiesAreNotMerged) {
   }
 }
 
+/// What is packed was written by others as well.
+TEST_F(Build, LiesAreNotPacked) {
+  files_.resize(1);
+  ASSERT_EQ(runProgram(gen("out", {"--target", "glsl", "--no-validate", "--fallback"}), folder_), 0);
+  const std::string path = (folder_ / "out/manifest.json").string();
+  const auto good = nlohmann::json::parse(filesBelow(folder_ / "out").at("manifest.json").bytes);
+  const std::string use = "/files/0/materials/0/uses/0";
+  struct Lie {
+    std::string at;
+    nlohmann::json value;
+    std::string code;
+  };
+  const Lie kLies[] = {
+      {use + "/shader", "none", "no-such-shader"},
+      {use + "/fallback/shader", "none", "no-such-shader"},
+      {use + "/fallback", nullptr, "wrong-type"},
+      {use + "/fallback", 3, "wrong-type"},
+      {use + "/fallback", nlohmann::json::array(), "wrong-type"},
+      {use + "/fallback", "x", "wrong-type"},
+      {use + "/fallback", nlohmann::json::object(), "missing-property"},
+  };
+  ASSERT_TRUE(good.contains(nlohmann::json::json_pointer(use + "/fallback/shader")));
+  for (const Lie& lie : kLies) {
+    nlohmann::json manifest = good;
+    manifest[nlohmann::json::json_pointer(lie.at)] = lie.value;
+    writeText(path, manifest.dump());
+    for (const Words& words : {Words{LACQUER_PROGRAM, "pack", "out", "-o", "x.lqpm"},
+                               Words{LACQUER_PROGRAM, "merge", "out/manifest.json", "-o", "x"}}) {
+      std::string output;
+      EXPECT_EQ(runProgram(words, folder_, &output), 1) << lie.at << lie.value;
+      EXPECT_TRUE(output.starts_with("out/manifest.json:" + lie.at + ": error: ")) << output;
+      EXPECT_NE(output.find("[" + lie.code + "]"), std::string::npos) << output;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "x.lqpm")) << lie.at;
+  }
+}
+
 TEST_F(Build, ManyMaterialsOfFewKinds) {
   writeText(folder_ / "many.gltf", RandomGltf(9).text(2000, 3));
   files_ = {"many.gltf"};

@@ -77,6 +77,18 @@ TEST(Value, bytesThatAreNoTextAreReplaced) {
   EXPECT_EQ(quotedText("a\"\xff"), "\"a\\\"\xef\xbf\xbd\"");
 }
 
+/// The last chunk of a GLB may be padded; what follows would be read by nobody.
+TEST(Value, nothingFollowsANul) {
+  using namespace std::string_literals;
+  EXPECT_TRUE(parse("{}\0\0"s, "a.json"));
+  const Result<Json> more = parse("{\n}\0 [[[ \""s, "a.json");
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error()[0].code, "json-syntax");
+  EXPECT_EQ(more.error()[0].place.line, 2U);
+  EXPECT_FALSE(parse("{}\0\0{}"s, "a.json"));
+  EXPECT_FALSE(parse("{\"a\0\": 1}"s, "a.json"));
+}
+
 /// Whatever a file has where a reader looks, and wherever the reader looks in it.
 TEST(Value, membersAndElementsOfAnyKind) {
   for (const char* text :

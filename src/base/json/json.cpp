@@ -286,6 +286,14 @@ Result<Json> build(std::string_view text, const std::string& file, const Limits&
   }
   TreeBuilder builder(limits.values);
   if (Json::sax_parse(text.begin(), text.end(), &builder)) {
+    // The parser ends at a NUL, by which some pad a GLB's chunk.
+    const size_t end = text.find('\0');
+    if (end != std::string_view::npos && text.find_first_not_of('\0', end) != std::string_view::npos) {
+      Diagnostic diagnostic{
+          "json-syntax", Severity::Error, place, "not valid JSON: more follows a NUL byte", {}, {}};
+      locateInWindow(diagnostic, text, end, 1);
+      return tl::make_unexpected(Diagnostics{diagnostic});
+    }
     doubles = std::move(builder.doubles);
     return std::move(builder.root);
   }

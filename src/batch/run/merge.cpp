@@ -7,6 +7,7 @@
 
 #include "manifest/read.h"
 #include "manifest/text.h"
+#include "run/named_shaders.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "support/file.h"
@@ -45,36 +46,13 @@ std::string entryText(const Write& write) {
   return json.take();
 }
 
-/// A use, by where it is, and its shader.
-struct Named {
-  std::string path, pointer, shader;
-};
-
 /// What the shards say, as it is to be written.
 struct Merged {
   Strings files;
   std::map<std::string, std::pair<std::string, std::string>> shaders;  ///< id: entry, where it is from
-  std::vector<Named> uses;                                             ///< whose shaders no shard so far has
+  /// By shard: those that no shard before it has.
+  std::vector<std::pair<std::string, NamedShader>> named;
 };
-
-/// Uses whose shaders are not known yet.
-void addUses(const FileContract& file, const std::string& path, size_t index, Merged& merged) {
-  const auto add = [&](const ContractMaterial& material, const std::string& pointer) {
-    for (size_t i = 0; i < material.uses.size(); ++i) {
-      const auto add_shader = [&](const ContractUse& use, std::string_view key) {
-        if (!merged.shaders.contains(use.shader_id))
-          merged.uses.push_back({path, fmt::format("{}/uses/{}/{}", pointer, i, key), use.shader_id});
-      };
-      const ContractUse& use = material.uses[i];
-      add_shader(use, "shader");
-      if (use.fallback) add_shader(*use.fallback, "fallback/shader");
-    }
-  };
-  const std::string pointer = fmt::format("/files/{}", index);
-  for (size_t i = 0; i < file.materials.size(); ++i)
-    add(file.materials[i], fmt::format("{}/materials/{}", pointer, i));
-  if (file.default_material) add(*file.default_material, pointer + "/default_material");
-}
 
 Result<void> addShard(const std::string& path, const std::string& folder, Merged& merged) {
   Result<Manifest> shard = readShard(path);
@@ -94,7 +72,9 @@ Result<void> addShard(const std::string& path, const std::string& folder, Merged
     FileContract& file = shard->files[i];
     // What an entry says of its source holds in the new manifest's folder.
     file.source = moved(file.source);
-    addUses(file, path, i, merged);
+    for (NamedShader& named : shadersNamedIn(file, i)) {
+      if (!merged.shaders.contains(named.id)) merged.named.emplace_back(path, std::move(named));
+    }
     merged.files.push_back(entryText([&](json::JsonText& json) { manifest::write(file, json); }));
     file = {};
   }
@@ -104,15 +84,10 @@ Result<void> addShard(const std::string& path, const std::string& folder, Merged
 /// An error for each use whose shader is in none of the shards.
 Diagnostics absent(const Merged& merged) {
   Diagnostics wrong;
-  for (const Named& use : merged.uses) {
-    if (merged.shaders.contains(use.shader)) continue;
+  for (const auto& [path, named] : merged.named) {
+    if (merged.shaders.contains(named.id)) continue;
     if (isFull(wrong)) return wrong;
-    addBounded(wrong, {"no-such-shader",
-                       Severity::Error,
-                       {use.path, 0, 0, use.pointer},
-                       "there is no shader " + quote(use.shader),
-                       "merge its shard, too",
-                       {}});
+    addBounded(wrong, noSuchShader(path, named, "merge its shard, too"));
   }
   return wrong;
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <deque>
+#include <set>
 
 #include "lacquer/manifest.h"
+#include "run/named_shaders.h"
 #include "run/packed.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -33,6 +35,7 @@ private:
            (targets_.empty() || std::find(targets_.begin(), targets_.end(), target) != targets_.end());
   }
   Result<void> readCode(const ManifestCode& code, PackedShader& shader);
+  Diagnostics absent(const Manifest& manifest) const;
 
   const std::string& folder_;
   const std::vector<Target>& targets_;
@@ -60,7 +63,22 @@ Result<void> Packing::readCode(const ManifestCode& code, PackedShader& shader) {
   return {};
 }
 
+/// An error for each use whose shader the manifest does not have.
+Diagnostics Packing::absent(const Manifest& manifest) const {
+  std::set<std::string_view> known;
+  for (const ManifestShader& shader : manifest.shaders) known.insert(shader.id);
+  Diagnostics wrong;
+  for (size_t i = 0; i < manifest.files.size(); ++i) {
+    for (const NamedShader& named : shadersNamedIn(manifest.files[i], i)) {
+      if (known.contains(named.id)) continue;
+      addBounded(wrong, noSuchShader(folder_ + "/manifest.json", named, "pack what `lacquer gen` wrote"));
+    }
+  }
+  return wrong;
+}
+
 Result<void> Packing::read(const Manifest& manifest) {
+  if (Diagnostics wrong = absent(manifest); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   for (const ManifestShader& from : manifest.shaders) {
     PackedShader& shader = shaders_.emplace_back(
         PackedShader{from.id, &from.reflection, from.argument_buffers || from.reflection.bindless, {}});

@@ -256,7 +256,8 @@ void members(A& a, Of<A, ContractUse>& of) {
     a("unfilled_ports", facts.unfilled_ports);
   });
   if constexpr (A::kReads) {
-    if (fallback) of.fallback = fallbackOf(of, *fallback);
+    // What is no object has been reported, and is neither.
+    if (fallback && (fallback->own || fallback->use)) of.fallback = fallbackOf(of, *fallback);
   }
 }
 
