@@ -149,8 +149,10 @@ void Programs::share(const std::vector<OwnProgram>& all, const std::vector<Place
     const auto group = std::make_shared<Group>();
     group->lift = costs.liftOf(places);
     for (const uint32_t item : places) {
-      for (const Structure* structure : all[item].structures)
+      for (const Structure* structure : all[item].structures) {
         members_[structure->key] = {group, structure->looks_through};
+        addReader(*structure, group->readers);
+      }
     }
   }
 }
@@ -214,7 +216,7 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
       if (more.textures[k].name == own.graph.textures[i].name) own.textures[i] = origins.textures[k];
     }
   }
-  return {&fill, found->second.looks_through};
+  return {&fill, found->second.looks_through, beside() ? &group.readers : nullptr};
 }
 
 Diagnostics Programs::about(size_t made) const {
