@@ -1,5 +1,6 @@
 // A fallback beside each material's program: bindings, block and vertex inputs are such that an engine
 // exchanges the pipeline and nothing else.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,6 +73,12 @@ std::vector<std::byte> packed(const Shader& shader, const ContractUse& use) {
   return block;
 }
 
+/// What one layout says of both must be enough for the material's own shader.
+void compareStages(const BoundResource& own, const BoundResource& fallback) {
+  EXPECT_TRUE(fallback.vertex || !own.vertex) << own.name;
+  EXPECT_TRUE(fallback.fragment || !own.fragment) << own.name;
+}
+
 /// All that the material's own shader binds lies where the fallback has it.
 void compareBindings(const Reflection& own, const Reflection& fallback) {
   for (const UniformBlock& block : own.blocks) {
@@ -79,6 +86,7 @@ void compareBindings(const Reflection& own, const Reflection& fallback) {
                                    [&](const UniformBlock& one) { return one.name == block.name; });
     ASSERT_NE(same, fallback.blocks.end()) << block.name;
     EXPECT_EQ(placeOf(block), placeOf(*same)) << block.name;
+    compareStages(block, *same);
     if (block.role != BlockRole::Material) continue;
     // The fallback's bytes, then the material's own.
     ASSERT_FALSE(block.fields.empty());
@@ -92,6 +100,7 @@ void compareBindings(const Reflection& own, const Reflection& fallback) {
         std::find_if(fallback.textures.begin(), fallback.textures.end(),
                      [&](const ReflectedTexture& one) { return placeOf(one) == placeOf(texture); });
     ASSERT_NE(same, fallback.textures.end()) << texture.name;
+    compareStages(texture, *same);
     EXPECT_EQ(texture.type, same->type) << texture.name;
     EXPECT_EQ(texture.srgb, same->srgb) << texture.name;
     EXPECT_EQ(texture.slot, same->slot) << texture.name;
@@ -141,6 +150,42 @@ void compareUse(const ContractUse& use, const Contract& contract) {
   }
 }
 
+/// Materials whose patterns read attributes by name, all of which all primitives have.
+std::string readingAttributes(const std::vector<Strings>& names) {
+  const std::string out = R"("outputs": {"out": {"nodetype": "output", "type": "color3"}})";
+  std::string procedurals, materials, primitives;
+  for (size_t i = 0; i < names.size(); ++i) {
+    std::string nodes;
+    size_t last = 0, count = names[i].size();
+    for (const std::string& name : names[i]) {
+      nodes += fmt::format(
+          R"({}{{"nodetype": "geompropvalue", "type": "color3", {}, "inputs": {{"geomprop": {{"nodetype": "input", "type": "string", "value": "{}"}}}}}})",
+          nodes.empty() ? "" : ", ", out, name);
+    }
+    for (size_t k = 1; k < names[i].size(); ++k, last = count++) {
+      nodes += fmt::format(
+          R"(, {{"nodetype": "multiply", "type": "color3", {}, "inputs": {{"in1": {{"nodetype": "input", "type": "color3", "node": {}}}, "in2": {{"nodetype": "input", "type": "color3", "node": {}}}}}}})",
+          out, k == 1 ? 0 : last, k);
+    }
+    const char* const comma = i == 0 ? "" : ", ";
+    procedurals += fmt::format(
+        R"({}{{"name": "p{}", "nodetype": "nodegraph", "type": "color3", "inputs": {{}}, "nodes": [{}], "outputs": {{"out": {{"nodetype": "output", "type": "color3", "node": {}}}}}}})",
+        comma, i, nodes, count - 1);
+    materials += fmt::format(
+        R"({}{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0, "extensions": {{"KHR_texture_procedurals": {{"index": {}, "output": "out"}}}}}}}}}})",
+        comma, i);
+    primitives += fmt::format(
+        R"({}{{"material": {}, "attributes": {{"POSITION": 0, "NORMAL": 0, "_APPLE": 0, "_WETNESS": 0, "COLOR_1": 0, "TEXCOORD_4": 0}}}})",
+        comma, i);
+  }
+  return fmt::format(
+      R"({{"asset": {{"version": "2.0"}}, "extensionsUsed": ["KHR_texture_procedurals", "EXT_texture_procedurals_mx_1_39"],
+  "images": [{{"uri": "a.png"}}], "textures": [{{"source": 0}}], "materials": [{}],
+  "extensions": {{"KHR_texture_procedurals": {{"procedurals": [{}]}}}},
+  "accessors": [{{"count": 3, "type": "VEC3", "componentType": 5126}}], "meshes": [{{"primitives": [{}]}}]}})",
+      materials, procedurals, primitives);
+}
+
 std::set<std::string> fallbacksOf(const Contract& contract) {
   std::set<std::string> ids;
   for (const ContractMaterial& material : contract.materials) {
@@ -170,6 +215,81 @@ TEST(Fallback, OneForEachStageAndWhatLooksThrough) {
       EXPECT_EQ(looks, material.state.pass == Pass::LooksThrough) << material.name;
     }
   }
+}
+
+/// Attributes by name take free locations, which depend on what a shader reads: each own shader has its
+/// fallback's.
+TEST(Fallback, AttributesByNameAtOnePlace) {
+  const Options options = withFallback();
+  Messages messages;
+  const std::string text = readingAttributes({{"_APPLE", "_WETNESS"},
+                                              {"_WETNESS"},
+                                              {"COLOR_1", "_APPLE"},
+                                              {"COLOR_1"},
+                                              {"_APPLE", "TEXCOORD_4"},
+                                              {"TEXCOORD_4"}});
+  const Scene scene = Scene::fromMemory(text, "attributes", options, messages);
+  ASSERT_TRUE(scene) << errorsOf(messages);
+  const Contract contract = made(scene, options);
+  EXPECT_EQ(fallbacksOf(contract).size(), 1U);
+  EXPECT_EQ(contract.shaders.size(), 7U);
+  const auto locations = [&](const std::string& id) {
+    std::map<std::string, uint32_t> by_name;
+    for (const ContractShader& one : contract.shaders) {
+      if (one.shader.id() != id) continue;
+      for (const ShaderInput& input : one.shader.reflection().inputs) by_name[input.name] = input.location;
+    }
+    return by_name;
+  };
+  using Locations = std::map<std::string, uint32_t>;
+  const ContractUse& use = contract.materials.at(1).uses.at(0);
+  EXPECT_EQ(locations(use.fallback->shader_id), (Locations{{"POSITION", 0},
+                                                           {"NORMAL", 1},
+                                                           {"COLOR_1", 8},
+                                                           {"TEXCOORD_4", 9},
+                                                           {"_APPLE", 10},
+                                                           {"_WETNESS", 11}}));
+  EXPECT_EQ(locations(use.shader_id), (Locations{{"POSITION", 0}, {"NORMAL", 1}, {"_WETNESS", 11}}));
+}
+
+/// Of two materials each moves its own texture transform to the vertices, their fallback chooses between them
+/// in the fragments: what is bound must be seen by both stages.
+TEST(Fallback, StagesOfAllThatItStandsFor) {
+  constexpr const char* kTransforms = R"({
+  "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_texture_transform"],
+  "images": [{"uri": "a.png"}], "textures": [{"source": 0}],
+  "materials": [
+    {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}}},
+    {"emissiveFactor": [1, 1, 1],
+     "emissiveTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [3, 2]}}}}]})";
+  Options options = withFallback();
+  options.targets.push_back(Target::Wgsl);
+  options.validate = false;
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kTransforms, "transforms", options, messages);
+  ASSERT_TRUE(scene) << errorsOf(messages);
+  const Contract contract = made(scene, options);
+  EXPECT_EQ(fallbacksOf(contract).size(), 1U);
+  for (const ContractMaterial& material : contract.materials) {
+    for (const ContractUse* use : {&material.uses.at(0), material.uses.at(0).fallback.get()}) {
+      const Reflection& reflection = contract.shaders.at(use->shader).shader.reflection();
+      for (const UniformBlock& block : reflection.blocks) {
+        if (block.role != BlockRole::Material) continue;
+        EXPECT_TRUE(block.vertex && block.fragment) << use->shader_id;
+      }
+      // No more than is read.
+      for (const ReflectedTexture& texture : reflection.textures)
+        EXPECT_FALSE(texture.vertex) << texture.name;
+    }
+  }
+  const std::string manifest = manifestJson(contract, "transforms");
+  size_t rows = 0;
+  const std::string row = R"("name": "Material",)";
+  for (size_t at = manifest.find(row); at != std::string::npos; at = manifest.find(row, at + 1)) {
+    EXPECT_LT(manifest.find("\"vertex\"", at), manifest.find("\"buffer\"", at)) << at;
+    ++rows;
+  }
+  EXPECT_EQ(rows, contract.shaders.size());
 }
 
 TEST(Fallback, EveryExample) {

@@ -137,7 +137,11 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
     const auto group = std::make_shared<Group>();
     group->lift = shared.lift;
     groups_.push_back(group);
-    for (const Key& one : shared.structures) members_[one] = {group, known.at(one)->looks_through};
+    for (const Key& one : shared.structures) {
+      const Structure& structure = *known.at(one);
+      members_[one] = {group, structure.looks_through};
+      addReader(structure, group->readers);
+    }
   }
 }
 
@@ -238,7 +242,7 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
       if (more.textures[k].name == own.graph.textures[i].name) own.textures[i] = origins.textures[k];
     }
   }
-  return {&fill, found->second.looks_through};
+  return {&fill, found->second.looks_through, beside() ? &group.readers : nullptr};
 }
 
 Diagnostics Programs::about(size_t made) const {

@@ -74,6 +74,7 @@ private:
     std::map<Key, graph::Graph> graphs;  ///< of its materials, lifted: one for each structure
     std::map<Key, size_t> places;        ///< of those in the united graph
     programs::United united;
+    passes::Readers readers;  ///< its materials' own programs
   };
   const Setting& setting_;
   struct Member {

@@ -157,7 +157,9 @@ std::shared_ptr<const KnownShape> Describer::fallbackOf(Traced common, const gra
                              other->srgb != texture.srgb || other->file != texture.file))
       return nullptr;
   }
-  const Structure& structure = structures_.of(common.graph, lights_);
+  passes::OtherLayout beside;
+  if (share.readers != nullptr) beside.readers = *share.readers;
+  const Structure& structure = structures_.of(common.graph, lights_, beside);
   Filling filling = fillingOf(common.graph, material_);
   if (structure.shader.empty() || !withinLimits(structure, filling)) return nullptr;
   return std::make_shared<KnownShape>(KnownShape{&structure, share, std::move(filling),

@@ -211,19 +211,42 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
                    // its destructor
   addSetting(lights, setting, key.text("structure"));
   StructureKey(key, setting.options.parameters == Parameters::Baked).graph(graph);
-  if (!other.empty()) key.number(other.block);
+  if (!other.empty()) key.number('o').number(other.block).number(other.textures.size());
   for (const auto& [name, at] : other.textures)
     key.text(name).number(at.set).number(at.binding).number(at.flat);
+  for (const auto& [name, location] : other.inputs) key.text(name).number(location);
+  const passes::Readers& readers = other.readers;
+  if (!readers.empty()) key.number('r').number(readers.blocks.size());
+  for (const auto& [at, stages] : readers.blocks)
+    key.number(at.first).number(at.second).number(stages.vertex).number(stages.fragment);
+  for (const auto& [name, stages] : readers.textures)
+    key.text(name).number(stages.vertex).number(stages.fragment);
   return setting.keys->of(key.take());
 }
 
+/// By the graph, or of an environment's by the template.
+static const std::string& nameOfTexture(const ReflectedTexture& texture) {
+  return texture.role == TextureRole::Material ? texture.slot : texture.name;
+}
+
 passes::OtherLayout layoutOf(const Structure& structure) {
-  passes::OtherLayout layout{structure.preshader.blockSize(), {}};
-  for (const ReflectedTexture& texture : structure.reflection.textures) {
-    const std::string& name = texture.role == TextureRole::Material ? texture.slot : texture.name;
-    layout.textures[name] = {texture.at.set, texture.at.binding, texture.at.flat};
-  }
+  passes::OtherLayout layout;
+  layout.block = structure.preshader.blockSize();
+  for (const ReflectedTexture& texture : structure.reflection.textures)
+    layout.textures[nameOfTexture(texture)] = {texture.at.set, texture.at.binding, texture.at.flat};
+  for (const ShaderInput& input : structure.reflection.inputs) layout.inputs[input.name] = input.location;
   return layout;
+}
+
+void addReader(const Structure& structure, passes::Readers& readers) {
+  const auto add = [](const BoundResource& bound, ir::Stages& to) {
+    to.vertex |= bound.vertex;
+    to.fragment |= bound.fragment;
+  };
+  for (const UniformBlock& block : structure.reflection.blocks)
+    add(block, readers.blocks[{block.at.set, block.at.binding}]);
+  for (const ReflectedTexture& texture : structure.reflection.textures)
+    add(texture, readers.textures[nameOfTexture(texture)]);
 }
 
 Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
@@ -369,6 +392,10 @@ template <class Archive>
 static void fields(Archive& archive, Binding& at) {
   archive(at.set, at.binding, at.flat);
 }
+template <class Archive>
+static void fields(Archive& archive, Stages& of) {
+  archive(of.vertex, of.fragment);
+}
 }  // namespace ir
 
 namespace passes {
@@ -378,7 +405,7 @@ static void fields(Archive& archive, LightFacts& lights) {
 }
 template <class Archive>
 static void fields(Archive& archive, OtherLayout& other) {
-  archive(other.block, other.textures);
+  archive(other.block, other.textures, other.inputs, other.readers.blocks, other.readers.textures);
 }
 }  // namespace passes
 

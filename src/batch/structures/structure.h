@@ -50,7 +50,7 @@ struct Structure {
   std::vector<Number> numbers;
   std::string graph;  ///< JSON form of the graph without what belongs to one material
   passes::LightFacts lights;
-  passes::OtherLayout other;  ///< of the program that its shader takes the place of
+  passes::OtherLayout other;  ///< of the program that its shader takes the place of, or that take its own
 };
 
 /// A material's graph, and where its numbers and textures come from: none for what is not the material's.
@@ -69,6 +69,7 @@ public:
   struct Share {
     const programs::Fill* fill = nullptr;  ///< null for a material that keeps its program
     bool looks_through = false;
+    const passes::Readers* readers = nullptr;  ///< the materials' own programs, where it stands beside them
   };
   /// Takes note of a material whose graph needs a structure. `shape`: its own (KnownShapes), or empty.
   virtual void note(const Key& structure, const material::Material& material,
@@ -111,6 +112,8 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
                  const passes::OtherLayout& other = {});
 /// That of a structure's shader.
 passes::OtherLayout layoutOf(const Structure& structure);
+/// What it reads is among what they read.
+void addReader(const Structure& structure, passes::Readers& readers);
 
 /// Graph::structure() of a flat, checked graph: of what the shader is made of and of nothing else, so that
 /// graphs have one whose ids and orders differ.

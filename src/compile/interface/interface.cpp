@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array kBothStages = {ir::Stage::Vertex, ir::Stage::Fragment};
 
-/// What the outputs of a stage reach.
+/// What the outputs of a stage reach, and what programs beside it read there.
 struct Used {
   std::vector<bool> blocks, textures, attributes, varyings;
   std::vector<std::string> slots;  ///< by texture: what the graph calls it
@@ -36,6 +36,12 @@ Used usedBy(const ir::Module& module, ir::Stage stage) {
     if (input.kind == ir::InputKind::Attribute) used.attributes[input.field] = true;
     if (input.kind == ir::InputKind::Varying) used.varyings[input.field] = true;
   }
+  // What programs beside it read is bound for them, too.
+  const bool ir::Stages::*const of = stage == ir::Stage::Vertex ? &ir::Stages::vertex : &ir::Stages::fragment;
+  for (size_t i = 0; i < module.blocks.size(); ++i)
+    used.blocks[i] = used.blocks[i] || module.blocks[i].others.*of;
+  for (size_t i = 0; i < module.textures.size(); ++i)
+    used.textures[i] = used.textures[i] || module.textures[i].others.*of;
   return used;
 }
 
@@ -237,7 +243,8 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
     ReflectedTexture& texture = made.textures.emplace_back(textureOf(module, module.textures[i]));
     texture.vertex = used[0].textures[i];
     texture.fragment = used[1].textures[i];
-    if (texture.role == TextureRole::Material) texture.slot = used[texture.vertex ? 0 : 1].slots[i];
+    if (texture.role == TextureRole::Material)
+      texture.slot = used[0].slots[i].empty() ? used[1].slots[i] : used[0].slots[i];
   }
   addInputs(made, module, used, has_vertex);
   for (const ir::Output& output : module.outputs) {

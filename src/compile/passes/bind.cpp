@@ -2,12 +2,80 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "ir/module.h"
 #include "passes/passes.h"
 
 namespace lacquer::passes {
+
+namespace {
+
+/// The inputs that the other program has at its locations, the module's further ones where neither has any.
+template <class Inputs>
+void placeInputs(Inputs& inputs, const std::vector<bool>& used, const OtherLayout& other) {
+  std::set<uint32_t> taken;
+  std::vector<size_t> further;
+  for (const auto& [name, location] : other.inputs) taken.insert(location);
+  for (size_t i = 0; i < inputs.size(); ++i) {
+    if (const auto it = other.inputs.find(inputs[i].name); it != other.inputs.end())
+      inputs[i].location = it->second;
+    else if (used[i])
+      further.push_back(i);
+  }
+  for (const size_t i : further) {
+    if (taken.insert(inputs[i].location).second) continue;
+    uint32_t location = 0;
+    while (taken.contains(location)) ++location;
+    inputs[i].location = location;
+    taken.insert(location);
+  }
+}
+
+/// What the vertices have, or of a template without a vertex stage the fragments.
+void placeInputs(ir::Module& module, const OtherLayout& other) {
+  if (other.inputs.empty()) return;
+  std::vector<bool> attributes(module.attributes.size(), false), varyings(module.varyings.size(), false);
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Attribute) attributes[input.field] = true;
+    if (input.kind == ir::InputKind::Varying) varyings[input.field] = true;
+  }
+  placeInputs(module.attributes, attributes, other);
+  if (module.attributes.empty()) placeInputs(module.varyings, varyings, other);
+}
+
+/// Leaves in `others` what the module itself does not read.
+void addReaders(ir::Module& module, const Readers& readers) {
+  if (readers.empty()) return;
+  for (ir::Block& block : module.blocks) {
+    const auto it = readers.blocks.find({block.binding.set, block.binding.binding});
+    if (it != readers.blocks.end()) block.others = it->second;
+  }
+  const auto each = [&](ir::Stage stage, bool ir::Stages::*of) {
+    for (const ir::ValueId id : ir::reachable(module, stage)) {
+      if (const std::optional<uint32_t> block = ir::blockOf(module, id))
+        module.blocks[*block].others.*of = false;
+      if (module.dag[id].op != ir::Op::Input) continue;
+      const ir::Input& input = module.dag.inputOf(id);
+      if (input.kind != ir::InputKind::Texture) continue;
+      module.textures[input.field].others.*of = false;
+    }
+  };
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    const auto it = readers.textures.find(input.name);
+    if (input.kind == ir::InputKind::Texture && it != readers.textures.end())
+      module.textures[input.field].others = it->second;
+  }
+  each(ir::Stage::Vertex, &ir::Stages::vertex);
+  each(ir::Stage::Fragment, &ir::Stages::fragment);
+}
+
+}  // namespace
 
 void bind(ir::Module& module, const OtherLayout& other) {
   module.beside_another = !other.empty();
@@ -51,6 +119,8 @@ void bind(ir::Module& module, const OtherLayout& other) {
   module.textures = std::move(kept);
   for (const ir::ValueId id : texture_inputs)
     module.dag.setInputField(id, place[module.dag.inputOf(id).field]);
+  placeInputs(module, other);
+  addReaders(module, other.readers);
 }
 
 Diagnostics checkPlaces(const ir::Module& module) {

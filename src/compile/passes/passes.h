@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ir/module.h"
@@ -20,12 +21,22 @@ struct LightFacts {
   bool operator==(const LightFacts&) const = default;
 };
 
+/// The stages in which programs read what is bound.
+struct Readers {
+  std::map<std::pair<uint32_t, uint32_t>, ir::Stages> blocks{};  ///< by set and binding
+  std::map<std::string, ir::Stages, std::less<>> textures{};     ///< by the names of OtherLayout
+  bool empty() const { return blocks.empty() && textures.empty(); }
+};
+
 /// Of a program in whose place a module is to be drawn with, with the same buffers and textures bound.
 struct OtherLayout {
   uint32_t block = 0;  ///< bytes of its material block: the module's own fields lie behind them
   /// Where it has textures, by the graph's names and, of an environment's, the template's.
   std::map<std::string, ir::Binding, std::less<>> textures{};
-  bool empty() const { return block == 0 && textures.empty(); }
+  std::map<std::string, uint32_t, std::less<>> inputs{};  ///< locations of what it reads of the vertices
+  /// Of the programs that are to be drawn with in the module's place: then it has all the rest from none.
+  Readers readers{};
+  bool empty() const { return block == 0 && textures.empty() && inputs.empty(); }
 };
 
 /// What is wrong with the facts for this module's template: a kind that it does not have, more lights than
@@ -62,7 +73,7 @@ void hoistToVertex(ir::Module& module);
 void place(ir::Module& module, const OtherLayout& other = {});
 
 /// Gives the material's textures that are left their places, those of `other` where that has them, and drops
-/// the others.
+/// the others. What is read of the vertices has `other`'s locations, and what its readers read their stages.
 void bind(ir::Module& module, const OtherLayout& other = {});
 
 /// Makes elements of lists of the objects and of the material, which a number of each instance picks, and of

@@ -61,7 +61,7 @@ private:
   Diagnostics found_;
 };
 
-/// By index: the blocks and textures that a stage reads.
+/// By index: the blocks and textures that a stage reads, or has bound for programs beside it.
 struct Read {
   std::set<uint32_t> blocks, textures, attributes;
 
@@ -77,6 +77,14 @@ struct Read {
       const bool own = input.kind == ir::InputKind::Texture && module.textures[input.field].array.empty();
       if (own) textures.insert(input.field);
       if (input.kind == ir::InputKind::Attribute) attributes.insert(input.field);
+    }
+    const bool ir::Stages::*const of =
+        stage == ir::Stage::Vertex ? &ir::Stages::vertex : &ir::Stages::fragment;
+    for (uint32_t i = 0; i < module.blocks.size(); ++i) {
+      if (module.blocks[i].others.*of) blocks.insert(i);
+    }
+    for (uint32_t i = 0; i < module.textures.size(); ++i) {
+      if (module.textures[i].others.*of) textures.insert(i);
     }
   }
 };

@@ -34,6 +34,7 @@ public:
       for (const std::string& held : output.holds) text(held);
     }
     textures();
+    others();
     parameters();
     number(module_.varyings.size());
     for (const Varying& varying : module_.varyings) text(varying.name);
@@ -76,6 +77,11 @@ private:
     number(input.group);
     number(input.index);
     text(input.name);
+    // Elsewhere they follow from what is read.
+    if (module_.beside_another && input.kind == InputKind::Attribute)
+      number(module_.attributes[input.field].location);
+    if (module_.beside_another && input.kind == InputKind::Varying)
+      number(module_.varyings[input.field].location);
     if (input.kind != InputKind::LoopIndex) return;
     number(input.range.lo);
     number(input.range.hi);
@@ -135,6 +141,18 @@ private:
       text(slot.array);
       number(slot.number);
     }
+  }
+
+  /// Of a program alone there is nothing.
+  void others() {
+    const auto add = [&](const std::string& name, const Stages& stages) {
+      if (!stages.any()) return;
+      text(name);
+      number(stages.vertex);
+      number(stages.fragment);
+    };
+    for (const Block& block : module_.blocks) add(block.instance, block.others);
+    for (const TextureSlot& slot : module_.textures) add(slot.name, slot.others);
   }
 
   /// The packers hold to their ranges.

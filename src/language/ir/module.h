@@ -72,6 +72,12 @@ struct BlockField {
 /// Who fills a block, and how often.
 enum class BlockRole : uint8_t { Frame, Lights, Material, Object, List };
 
+/// Stages of a pipeline.
+struct Stages {
+  bool vertex = false, fragment = false;
+  bool any() const { return vertex || fragment; }
+};
+
 struct Block {
   BlockRole role;
   std::string name;      ///< the type's name, "Frame"
@@ -83,6 +89,7 @@ struct Block {
   /// It has elements without end, in a storage buffer (in ESSL a texture), and is read by Op::Element alone.
   /// A material's and an object's are lists where the module is bindless.
   bool list = false;
+  Stages others{};  ///< in which programs read it that stand beside this one, and it does not
 
   /// In the texts an array and a list have an `s` behind the names of their elements.
   bool plural() const { return array != 0 || list; }
@@ -113,6 +120,7 @@ struct TextureSlot {
   int texture = -1;                   ///< glTF texture index, -1 when none
   std::string pointer;                ///< JSON pointer of the textureInfo
   Binding binding{};                  ///< an environment's by the template, a material's by the bind pass
+  Stages others{};                    ///< as a block's
   std::string array{};  ///< not empty: it is one of this array, at the number that the material's record has
   uint32_t number = 0;  ///< then: that field of the record
 };
