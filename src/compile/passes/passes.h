@@ -34,7 +34,7 @@ struct OtherLayout {
   /// Where it has textures, by the graph's names and, of an environment's, the template's.
   std::map<std::string, ir::Binding, std::less<>> textures{};
   std::map<std::string, uint32_t, std::less<>> inputs{};  ///< locations of what it reads of the vertices
-  /// Of the programs that are to be drawn with in the module's place: then it has all the rest from none.
+  /// The other way about: the programs that are to be drawn with in the module's place.
   Readers readers{};
   bool empty() const { return block == 0 && textures.empty() && inputs.empty(); }
 };
