@@ -19,7 +19,8 @@ const { readHdr, radianceOf } = await part('hdr');
 const { makeEnvironment, Turned } = await part('environment');
 const { element, fileLights } = await part('lights');
 const { halves } = await part('gpu');
-const { frameBlocks, kBlocks } = await part('viewport');
+const { frameBlocks } = await part('frame');
+const { kBlocks } = await part('viewport');
 const { bounds, eachNode, geometry, openGltf } = await part('gltf', 'web/src');
 
 /** A .hdr file of colours that RGBE holds exactly; rows are run-length coded where `runs`. */
