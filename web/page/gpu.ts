@@ -87,7 +87,7 @@ export class GpuPainter {
   private arrays = new WeakMap<ArrayBufferView, GPUBuffer>();
   /** What is in the buffers of numbers that change. */
   private versions = new WeakMap<Numbers, number>();
-  private materials = new WeakMap<Look, GPUBuffer>();
+  private materials = new WeakMap<Look, { buffer: GPUBuffer; version?: number }>();
   private cubes = new WeakMap<Cube, { texture: GPUTexture; view: GPUTextureView; version: number }>();
   private textures = new Map<string, GPUTextureView>();
   private samplers = new Map<string, GPUSampler>();
@@ -298,9 +298,10 @@ export class GpuPainter {
     if (buffer) {
       if (name === 'Object') return { buffer: geometry.object };
       if (name !== 'Material') return { buffer: this.blocks.get(name)! };
-      let block = this.materials.get(look);
-      if (!block) this.materials.set(look, (block = this.buffer(look.block, GPUBufferUsage.UNIFORM)));
-      return { buffer: block };
+      const made = once(this.materials, look, () => ({ buffer: this.buffer(look.block, GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST), version: look.version }));
+      if (made.version !== look.version) this.device.queue.writeBuffer(made.buffer, 0, look.block as Uint8Array<ArrayBuffer>);
+      made.version = look.version;
+      return { buffer: made.buffer };
     }
     const of = sampler ? name.replace(/_sampler$/, '') : name;
     const slot = look.slots.get(of);

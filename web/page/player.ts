@@ -2,6 +2,7 @@
 import { bounds, type Vec3 } from '../src/gltf';
 import type { Clip } from './clips';
 import { byId, h } from './dom';
+import { Drives } from './drives';
 import { kPicturesPerSecond } from './frame';
 import type { Page } from './main';
 
@@ -25,8 +26,10 @@ export class Player {
   private playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
   /** When the picture before was drawn; 0: it stood. */
   private ticked = 0;
+  private readonly drives: Drives;
 
   constructor(private readonly page: Page) {
+    this.drives = new Drives(page);
     const { viewport } = page;
     viewport.onMoment = () => this.tick();
     const choice = byId<HTMLSelectElement>('clip');
@@ -98,6 +101,7 @@ export class Player {
     // A page that was hidden goes on where it was.
     if (running && this.ticked > 0) this.show((this.seconds + Math.min(now - this.ticked, 250) / 1000) % clip.duration);
     this.ticked = running ? now : 0;
+    this.drives.set(clip, this.seconds);
     return running;
   }
 

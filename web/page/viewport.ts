@@ -26,6 +26,8 @@ export const slotKey = ({ texture, srgb, sampler }: Slot) => `${texture}:${srgb}
 export interface Look {
   id: string;
   block: Uint8Array;
+  /** Another one each time that the block is written anew. */
+  version?: number;
   /** By slot. */
   slots: Map<string, Slot>;
   doubleSided: boolean;

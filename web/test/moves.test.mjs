@@ -1,10 +1,24 @@
 // What moves in a file: nodes, skins and morph targets, by its animations, on the page.
 import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { begin, drop, end, kSmall, open, painted, settled } from './page.mjs';
+import { pathToFileURL } from 'node:url';
+import { build } from 'esbuild';
+import { hasWebGpu, kWebGpu, launch } from './browser.mjs';
+import { root } from './native.mjs';
+import { begin, drop, end, kSmall, middle, open, painted, set, settled } from './page.mjs';
 
+const parts = mkdtempSync(join(tmpdir(), 'lacquer-moves-'));
+const part = async (name) => {
+  const outfile = join(parts, `${name}.mjs`);
+  await build({ entryPoints: [join(root, `web/page/${name}.ts`)], outfile, bundle: true, format: 'esm', target: 'es2022' });
+  return import(pathToFileURL(outfile));
+};
 before(begin);
 after(end);
+after(() => rmSync(parts, { recursive: true }));
 
 /** With room for one more bar below the picture. */
 const kTall = { ...kSmall, height: 460 };
@@ -140,6 +154,79 @@ test('a skin bends a square where its joints are', () => open([], async (page) =
   assert.deepEqual(await seen(page, places), [true, false, true]);
 }, { size: kTall }));
 
+test('WebGPU draws a bent square and a moved one, too', async (t) => {
+  const by = await launch(...kWebGpu);
+  try {
+    await open([], async (page) => {
+      if (!(await hasWebGpu(page))) return t.skip('this browser has no WebGPU');
+      await reduced(page);
+      await page.selectOption('#painter', 'webgpu');
+      await page.waitForSelector('#viewport-gpu:visible');
+      await show(page, squareFile((json, accessor) => {
+        bend(json, accessor);
+        json.nodes.push({ mesh: 0, translation: [-2, -2, 0], scale: [0.3, 0.3, 1] });
+        json.scenes[0].nodes.push(3);
+        const [bent, carried] = [clip(accessor, 2, 'translation', [0, 1], 'VEC3', [0, 0, 0, 2, 0, 0]), clip(accessor, 3, 'translation', [0, 1], 'VEC3', [-2, -2, 0, 2, -2, 0])];
+        const glow = { sampler: 2, target: { path: 'pointer', extensions: { KHR_animation_pointer: { pointer: '/materials/0/emissiveFactor' } } } };
+        json.animations = [{
+          samplers: [bent.samplers[0], carried.samplers[0], { input: accessor('SCALAR', [0, 1, 2]), output: accessor('VEC3', [1, 0, 0, 1, 0, 0, 0, 1, 0]) }],
+          channels: [bent.channels[0], { ...carried.channels[0], sampler: 1 }, glow],
+        }];
+        json.extensionsUsed = ['KHR_animation_pointer'];
+      }));
+      const colors = () => page.evaluate(async (places) => {
+        const { viewport } = window.lacquerPage;
+        Object.assign(viewport, { middle: [0, 0, 0], radius: 3 / Math.tan(0.36) / 3.4 });
+        Object.assign(viewport.orbit, { yaw: 0, pitch: 0, distance: 3.4 });
+        viewport.draw();
+        const { width, height } = viewport.gpu.canvas;
+        const pixels = await viewport.gpu.pixels(viewport, width, height);
+        return places.map(([x, y]) => {
+          const at = 4 * (Math.floor((0.5 - y / 6) * height) * width + Math.floor(width / 2 + (x / 6) * height));
+          const [red, green, blue] = pixels.subarray(at, at + 3);
+          return red > 200 && green < 100 ? 'red' : green > 200 && red < 100 ? 'green' : Math.abs(green - blue) < 8 ? '' : `${[red, green, blue]}`;
+        });
+      }, [[-0.7, 0.7], [2.5, 0.8], [-2, -2], [2, -2]]);
+      assert.deepEqual(await colors(), ['red', '', 'red', '']);
+      await scrub(page, 1);
+      assert.deepEqual(await colors(), ['', 'red', '', 'red']);
+      await scrub(page, 2);
+      assert.deepEqual(await colors(), ['', 'green', '', 'green']);
+      await scrub(page, 0);
+      assert.deepEqual(await colors(), ['red', '', 'red', '']);
+    }, { size: kTall, by });
+  } finally {
+    await by.close();
+  }
+});
+
+test('a clip moves a number of a material, on a ball and after an edit, too', () => open([], async (page) => {
+  await reduced(page);
+  await show(page, squareFile((json, accessor) => {
+    const { samplers, channels } = clip(accessor, 0, 'translation', [0, 1], 'VEC3', [1, 0, 0, 0, 1, 0]);
+    channels[0].target = { path: 'pointer', extensions: { KHR_animation_pointer: { pointer: '/materials/0/emissiveFactor' } } };
+    json.animations = [{ samplers, channels }];
+    json.extensionsUsed = ['KHR_animation_pointer'];
+  }));
+  const color = async () => {
+    const [red, green] = await middle(page);
+    return red > 200 && green < 100 ? 'red' : green > 200 && red < 100 ? 'green' : `${[red, green]}`;
+  };
+  assert.equal(await color(), 'red');
+  await scrub(page, 1);
+  assert.equal(await color(), 'green');
+  await page.selectOption('#shape', 'ball');
+  await painted(page);
+  assert.equal(await color(), 'green');
+  await set(page, 'p:/materials/0/pbrMetallicRoughness/roughnessFactor', 0.3);
+  await painted(page);
+  assert.equal(await color(), 'green');
+  await page.selectOption('#clip', '');
+  await painted(page);
+  assert.equal(await color(), 'red');
+  assert.deepEqual(await page.evaluate(() => window.lacquerPage.document.get('/materials/0/emissiveFactor')), [1, 0, 0]);
+}, { size: kTall }));
+
 test('a morph target moves what it is of, by the weights of the mesh, the node and the clip', () => open([], async (page) => {
   await reduced(page);
   const file = (weights, animated) => squareFile((json, accessor) => {
@@ -231,3 +318,71 @@ test('what is wrong with what moves is said, and the rest is drawn', () => open(
   assert.match(await said(moved('translation', [0, 1], 'VEC3', [0, 0, 0, 1, 1, 1], (json) => { json.nodes[0].matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]; })), /node 0 has a matrix/);
   assert.match(await page.textContent('#messages'), /node 0 has a matrix/);
 }, { size: kTall }));
+
+const { Document } = await part('document');
+const documentOf = (json) => new Document(
+  { scene: () => ({ materialCount: 1, materialName: () => '', uses: () => [], free: () => undefined }) },
+  { name: 'a.gltf', bytes: Buffer.from(JSON.stringify(json)), resources: new Map() },
+);
+/** All clips at some moments, and at rest: what is drawn stays numbers. */
+function playAll({ moves, drawables }) {
+  for (const clip of [...moves.clips, null]) {
+    for (const seconds of [0, 0.5, 1, 7]) {
+      moves.pose(clip, seconds);
+      for (const { model, normal, attributes } of drawables) {
+        assert.ok([...model, ...normal, ...attributes.get('POSITION').data, ...attributes.get('NORMAL').data].every(Number.isFinite));
+      }
+    }
+  }
+}
+
+test('whatever is in the place of whatever value, all clips play', () => {
+  const whole = squareFile((json, accessor) => {
+    bend(json, accessor);
+    json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', Array(12).fill(2)), NORMAL: accessor('VEC3', Array(12).fill(1)) }];
+    json.meshes[0].weights = [0.5];
+    json.nodes.push({ mesh: 0, rotation: [0, 0, 0, 1], scale: [1, 1, 1], matrix: undefined });
+    json.animations = [
+      clip(accessor, 2, 'rotation', [0, 1], 'VEC4', [0, 0, 0, 1, 0, 0, 1, 0]), clip(accessor, 0, 'weights', [0, 1], 'SCALAR', [0, 1], 'STEP'),
+      clip(accessor, 1, 'scale', [0, 1], 'VEC3', Array(18).fill(1), 'CUBICSPLINE'),
+    ];
+    json.animations[2].channels[0].target = { path: 'pointer', extensions: { KHR_animation_pointer: { pointer: '/nodes/1/scale' } } };
+  });
+  const others = [null, true, 0, 5, -1, 1.5, 1e300, '', 'x', '__proto__', [], [null], [1, 1], ['x', 1.5, -1, {}], {}, { length: 5 }, [1e300, 1e300, 1e300, 1e300]];
+  const places = (at, path = []) =>
+    typeof at === 'object' && at !== null ? Object.entries(at).flatMap(([key, value]) => [[...path, key], ...places(value, [...path, key])]) : [];
+  const first = JSON.parse(whole);
+  const sound = documentOf(first);
+  assert.deepEqual([sound.moves.said, sound.moves.clips.length], [[], 3]);
+  playAll(sound);
+  for (const path of places(first).filter(([top]) => ['meshes', 'nodes', 'skins', 'animations', 'accessors', 'scenes'].includes(top))) {
+    for (const other of [...others, undefined]) {
+      const json = JSON.parse(whole);
+      const at = path.slice(0, -1).reduce((at, key) => at[key], json);
+      if (other === undefined) delete at[path.at(-1)];
+      else at[path.at(-1)] = other;
+      assert.doesNotThrow(() => playAll(documentOf(json)), `${path.join('/')}: ${JSON.stringify(other)}`);
+    }
+  }
+});
+
+test('what moves has an end, though many nodes have a large mesh, a skin and many targets', () => {
+  const many = (count, make) => Array.from({ length: count }, (_, i) => make(i));
+  const begin = performance.now();
+  const large = squareFile((json, accessor) => {
+    bend(json, accessor);
+    const [primitive] = json.meshes[0].primitives;
+    primitive.targets = many(20_000, () => ({ POSITION: 0 }));
+    json.meshes[0].weights = many(20_000, () => 1);
+    json.skins = many(100, () => json.skins[0]);
+    json.nodes = [...json.nodes, ...many(20_000, (i) => ({ mesh: 0, skin: i % 100 }))];
+    delete json.scenes;
+    json.animations = [{ samplers: [{ input: accessor('SCALAR', [0, 1]), output: 0 }], channels: many(200_000, () => ({ sampler: 0, target: { node: 2, path: 'translation' } })) }];
+    json.animations[0].samplers[0].output = accessor('VEC3', [0, 0, 0, 1, 1, 1]);
+  });
+  const of = documentOf(JSON.parse(large));
+  of.moves.pose(of.moves.clips[0], 0.5);
+  assert.equal(of.moves.clips[0].channels.length, 100_000);
+  assert.ok(performance.now() - begin < 30_000, 'it takes too long');
+  assert.ok(of.moves.said.length < 10 && of.moves.said.some((text) => /drawn at rest/.test(text)), of.moves.said.join('\n'));
+});
