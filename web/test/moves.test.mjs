@@ -324,6 +324,61 @@ const documentOf = (json) => new Document(
   { scene: () => ({ materialCount: 1, materialName: () => '', uses: () => [], free: () => undefined }) },
   { name: 'a.gltf', bytes: Buffer.from(JSON.stringify(json)), resources: new Map() },
 );
+const near = (of, wanted) => wanted.forEach((x, i) => assert.ok(Math.abs(of[i] - x) < 1e-5, `${[...of]} is not ${wanted}`));
+const attribute = (of, name, drawable = 0) => of.drawables[drawable].attributes.get(name).data;
+
+test('normals and tangents turn with their joints, eight of them for a vertex', () => {
+  const half = Math.SQRT1_2;
+  const file = JSON.parse(squareFile((json, accessor) => {
+    bend(json, accessor);
+    const [{ attributes }] = json.meshes[0].primitives;
+    attributes.TANGENT = accessor('VEC4', Array(4).fill([1, 0, 0, -1]).flat());
+    attributes.WEIGHTS_0 = accessor('VEC4', Array(4).fill([0, 0, 0, 0.5]).flat());
+    attributes.JOINTS_0 = attributes.JOINTS_1 = accessor('VEC4', Array(16).fill(1), 5123);
+    attributes.WEIGHTS_1 = accessor('VEC4', Array(4).fill([0, 0.5, 0, 0]).flat());
+    json.nodes[2].rotation = [half, 0, 0, half]; // y to z, z to -y
+    json.nodes[2].scale = [2, 1, 1];
+    json.animations = [clip(accessor, 2, 'rotation', [0, 1], 'VEC4', [0, 0, 0, 1, 0, half, 0, -half])];
+  }));
+  const of = documentOf(file);
+  assert.deepEqual(of.moves.said, []);
+  near(attribute(of, 'POSITION'), [-2, 0, -1, 2, 0, -1, 2, 0, 1]);
+  near(attribute(of, 'NORMAL'), [0, -1, 0]);
+  near(attribute(of, 'TANGENT'), [1, 0, 0, -1]);
+  // Along the shorter arc: an eighth about -y.
+  of.moves.pose(of.moves.clips[0], 0.5);
+  near(attribute(of, 'TANGENT'), [half, 0, half, -1]);
+  near(attribute(of, 'NORMAL'), [-half, 0, half]);
+  near(of.drawables[0].model, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+});
+
+test('morph targets change normals; where a primitive has none, they are those of its bent triangles', () => {
+  const file = (bare) => documentOf(JSON.parse(squareFile((json, accessor) => {
+    const [primitive] = json.meshes[0].primitives;
+    primitive.targets = [{ POSITION: accessor('VEC3', [0, 0, 0, 0, 0, 2, 0, 0, 2, 0, 0, 0]), NORMAL: accessor('VEC3', Array(4).fill([1, 0, -1]).flat()) }];
+    json.meshes[0].weights = [0];
+    json.nodes[0].weights = [1];
+    if (bare) delete primitive.attributes.NORMAL;
+  })));
+  near(attribute(file(false), 'NORMAL'), [1, 0, 0]);
+  const [x, y, z] = attribute(file(true), 'NORMAL');
+  assert.ok(y === 0 && z > 0 && Math.abs(x + z) < 1e-6, `${[x, y, z]}`);
+});
+
+test('instances go where their node goes, and one bent shape is theirs together', () => {
+  const of = documentOf(JSON.parse(squareFile((json, accessor) => {
+    json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', Array(12).fill(1)) }];
+    json.nodes[0].extensions = { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: accessor('VEC3', [1, 0, 0, 3, 0, 0]) } } };
+    const [moved, changed] = [clip(accessor, 0, 'translation', [0, 1], 'VEC3', [0, 0, 0, 0, 8, 0]), clip(accessor, 0, 'weights', [0, 1], 'SCALAR', [0, 1])];
+    json.animations = [{ samplers: [moved.samplers[0], changed.samplers[0]], channels: [moved.channels[0], { ...changed.channels[0], sampler: 1 }] }];
+  })));
+  of.moves.pose(of.moves.clips[0], 0.5);
+  assert.deepEqual(of.drawables.map(({ model }) => [...model.slice(12, 15)]), [[1, 4, 0], [3, 4, 0]]);
+  assert.equal(of.drawables[0].attributes, of.drawables[1].attributes);
+  near(attribute(of, 'POSITION', 1), [-0.5, -0.5, 0.5]);
+  assert.equal(attribute(of, 'POSITION'), attribute(of, 'POSITION', 1));
+});
+
 /** All clips at some moments, and at rest: what is drawn stays numbers. */
 function playAll({ moves, drawables }) {
   for (const clip of [...moves.clips, null]) {
