@@ -33,6 +33,10 @@ interface Acts {
   turnAround(angle: number, done: boolean): void;
   /** A click at a place of the picture, from -1 to 1, y up. */
   pick(x: number, y: number): void;
+  /** The file's animation goes on, or stands. */
+  play(): void;
+  /** By so many pictures of it. */
+  step(by: number): void;
 }
 
 /** What a mouse, fingers and keys do on either canvas: a drag turns the picture, with Shift what is around; with Ctrl, the right button
@@ -51,6 +55,7 @@ export function connectPointer(viewport: Viewport, acts: Acts): void {
   const steps: Record<string, () => void> = {
     ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     '+': () => near(0.9), '-': () => near(1.1), f: () => viewport.fit(), F: () => viewport.fit(),
+    ' ': () => acts.play(), ',': () => acts.step(-1), '.': () => acts.step(1),
   };
   const shifted: Record<string, () => void> = { ArrowLeft: () => acts.turnAround(-0.1, false), ArrowRight: () => acts.turnAround(0.1, false) };
   const held: Record<string, () => void> = {

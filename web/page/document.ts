@@ -3,6 +3,7 @@ import type { Attribute, Lacquer, Message } from '../src/index';
 import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
 import { item, list } from '../src/json';
 import { asGltf, isDocument } from './foreign';
+import { Moves } from './moves';
 import { kOwnNodes } from './nodetext';
 import { kStage, stageOf, type Stage } from './stage';
 
@@ -13,7 +14,7 @@ export interface Input {
 }
 
 /** What the page's shaders do without: each instance is placed as a mesh of its own, what is stored as integers is read as floats,
- * and skins and morph targets rest. */
+ * and skins and morph targets have bent the vertices before. */
 const kPlaced: Attribute[] = ['INSTANCES', 'QUANTIZED', 'JOINTS_0', 'JOINTS_1', 'MORPH_TARGETS'];
 
 /** All that an edit may change of one material. */
@@ -30,6 +31,7 @@ interface Snapshot {
 export class Document {
   readonly file: GltfFile;
   readonly drawables: Drawable[];
+  readonly moves: Moves;
   /** The drawables' materials outside of any variant. */
   private readonly plain: number[];
   readonly uses: Attribute[][] = [];
@@ -68,6 +70,7 @@ export class Document {
     scene.free();
     this.file = openGltf(input.name, input.bytes, input.resources);
     this.drawables = geometry(this.file);
+    this.moves = new Moves(this.file, this.drawables);
     this.plain = this.drawables.map(({ material }) => material);
     this.own = { textures: list(this.json.textures).length, images: list(this.json.images).length };
     this.takeExtras(lacquer);

@@ -2,11 +2,13 @@
 import type { Interface, Shader } from '../src/index';
 import { backgroundLevel, kBoard, lastLod } from './behind';
 import type { Cube, Environment } from './environment';
-import type { Drawable } from '../src/gltf';
+import type { Drawable, Mat4, Numbers } from '../src/gltf';
+import { once } from '../src/json';
 import { multiply } from '../src/math';
 import { neutral } from './shapes';
 import type { Pass } from '../src/types';
-import { dropOldest, frameBlocks, kBlocks, kLocations, kSolid, kSorted, slotKey, type Look, type Viewport } from './viewport';
+import { frameBlocks } from './frame';
+import { dropOldest, kBlocks, kLocations, kSolid, kSorted, slotKey, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
 declare const GPUMapMode: Record<'READ', number>;
@@ -34,6 +36,9 @@ interface Geometry {
   indices: GPUBuffer;
   count: number;
   object: GPUBuffer;
+  /** That the object's block is of. */
+  model: Mat4;
+  moving: Numbers[];
 }
 interface Target {
   width: number;
@@ -66,6 +71,13 @@ export function halves(numbers: Float32Array): Uint16Array<ArrayBuffer> {
   return made;
 }
 
+function objectBlock({ model, normal }: Drawable): Float32Array<ArrayBuffer> {
+  const block = new Float32Array(32);
+  block.set(model);
+  block.set(normal, 16);
+  return block;
+}
+
 export class GpuPainter {
   private readonly context: GPUCanvasContext;
   private readonly format: GPUTextureFormat;
@@ -73,7 +85,9 @@ export class GpuPainter {
   private geometries = new WeakMap<Drawable, Geometry>();
   /** Of numbers that several drawables may have. */
   private arrays = new WeakMap<ArrayBufferView, GPUBuffer>();
-  private materials = new WeakMap<Look, GPUBuffer>();
+  /** What is in the buffers of numbers that change. */
+  private versions = new WeakMap<Numbers, number>();
+  private materials = new WeakMap<Look, { buffer: GPUBuffer; version?: number }>();
   private cubes = new WeakMap<Cube, { texture: GPUTexture; view: GPUTextureView; version: number }>();
   private textures = new Map<string, GPUTextureView>();
   private samplers = new Map<string, GPUSampler>();
@@ -284,9 +298,10 @@ export class GpuPainter {
     if (buffer) {
       if (name === 'Object') return { buffer: geometry.object };
       if (name !== 'Material') return { buffer: this.blocks.get(name)! };
-      let block = this.materials.get(look);
-      if (!block) this.materials.set(look, (block = this.buffer(look.block, GPUBufferUsage.UNIFORM)));
-      return { buffer: block };
+      const made = once(this.materials, look, () => ({ buffer: this.buffer(look.block, GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST), version: look.version }));
+      if (made.version !== look.version) this.device.queue.writeBuffer(made.buffer, 0, look.block as Uint8Array<ArrayBuffer>);
+      made.version = look.version;
+      return { buffer: made.buffer };
     }
     const of = sampler ? name.replace(/_sampler$/, '') : name;
     const slot = look.slots.get(of);
@@ -329,26 +344,29 @@ export class GpuPainter {
   }
 
   private geometryOf(drawable: Drawable): Geometry {
-    let made = this.geometries.get(drawable);
-    if (made) return made;
-    const object = new Float32Array(32);
-    object.set(drawable.model);
-    object.set(drawable.normal, 16);
-    const arrayOf = (data: Float32Array | Uint32Array, usage: number) => {
-      const buffer = this.arrays.get(data) ?? this.buffer(data, usage);
-      this.arrays.set(data, buffer);
-      return buffer;
-    };
-    const attributes: Geometry['attributes'] = new Map();
-    for (const [name, { data, size }] of drawable.attributes) {
-      if (kLocations.includes(name)) attributes.set(name, { buffer: arrayOf(data, GPUBufferUsage.VERTEX), size });
+    const made = once(this.geometries, drawable, () => this.makeGeometry(drawable));
+    if (made.model !== drawable.model) this.device.queue.writeBuffer(made.object, 0, objectBlock(drawable));
+    made.model = drawable.model;
+    for (const numbers of made.moving) {
+      if (this.versions.get(numbers) === numbers.version) continue;
+      this.device.queue.writeBuffer(this.arrays.get(numbers.data)!, 0, numbers.data as Float32Array<ArrayBuffer>);
+      this.versions.set(numbers, numbers.version!);
     }
-    made = {
-      attributes, object: this.buffer(object, GPUBufferUsage.UNIFORM), count: drawable.indices.length,
-      indices: arrayOf(drawable.indices, GPUBufferUsage.INDEX),
-    };
-    this.geometries.set(drawable, made);
     return made;
+  }
+  private makeGeometry(drawable: Drawable): Geometry {
+    const arrayOf = (data: Float32Array | Uint32Array, usage: number) => once(this.arrays, data, () => this.buffer(data, usage | GPUBufferUsage.COPY_DST));
+    const attributes: Geometry['attributes'] = new Map();
+    const moving: Numbers[] = [];
+    for (const [name, numbers] of drawable.attributes) {
+      if (!kLocations.includes(name)) continue;
+      attributes.set(name, { buffer: arrayOf(numbers.data, GPUBufferUsage.VERTEX), size: numbers.size });
+      if (numbers.version !== undefined) moving.push(numbers);
+    }
+    return {
+      attributes, object: this.buffer(objectBlock(drawable), GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST), count: drawable.indices.length,
+      indices: arrayOf(drawable.indices, GPUBufferUsage.INDEX), model: drawable.model, moving,
+    };
   }
 
   private write(texture: GPUTexture, data: ArrayBufferView, bytesPerRow: number, level = 0, layer = 0): void {

@@ -14,6 +14,7 @@ import { fromBase64 } from '../src/gltf';
 import { GpuPainter } from './gpu';
 import { GraphPane } from './graph';
 import { kOwnNodes, NodeText } from './nodetext';
+import { Player } from './player';
 import { Properties } from './properties';
 import { kRates, ratesOf } from './rates';
 import { Viewport, type Look } from './viewport';
@@ -42,6 +43,7 @@ export class Page {
   private readonly nodeText: NodeText;
   readonly files: Files;
   readonly around: Around;
+  private readonly player: Player;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
@@ -75,7 +77,11 @@ export class Page {
     this.connectControls();
     this.files = new Files(this);
     this.around = new Around(this);
-    connectPointer(viewport, { turnAround: (angle, done) => this.around.turnBy(angle, done), pick: (x, y) => this.pick(x, y) });
+    this.player = new Player(this);
+    connectPointer(viewport, {
+      turnAround: (angle, done) => this.around.turnBy(angle, done), pick: (x, y) => this.pick(x, y),
+      play: () => this.player.play(), step: (by) => this.player.step(by),
+    });
     connectCode(this);
   }
 
@@ -128,6 +134,7 @@ export class Page {
     byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
     fillVariants(byId<HTMLSelectElement>('variant'), of);
+    this.player.open();
     viewport.setScene(of.drawables);
     this.othersOf = '';
     this.around.open();
@@ -137,6 +144,7 @@ export class Page {
     else this.showNoMaterial();
     this.compileOthers();
     if (of.said.length > 0) this.note(of.said.length === 1 ? of.said[0].text : `${of.said[0].text} (and ${of.said.length - 1} more)`);
+    for (const text of of.moves.said) this.noteMore(text);
     if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
     this.files.changed();
   }

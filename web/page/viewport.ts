@@ -3,10 +3,11 @@ import type { Interface, Shader } from '../src/index';
 import type { Pass } from '../src/types';
 import { Behind, backgroundLevel, kTriangleVertex, lastLod, type Background, type Copy } from './behind';
 import { constantEnvironment, environmentOf, Turned, type Cube, type Environment } from './environment';
-import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gltf';
+import { bounds, image, sourceOf, type Drawable, type GltfFile, type Numbers } from '../src/gltf';
 import type { GpuPainter } from './gpu';
 import { isCount, item, list } from '../src/json';
-import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
+import { frameBlocks, kPicturesPerSecond, type Surroundings } from './frame';
+import { directional, kStudioLights, type Light } from './lights';
 import { add, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
 import { firstMet } from './pick';
 import { ball, cornersUv, flatDrawable, neutral } from './shapes';
@@ -25,6 +26,8 @@ export const slotKey = ({ texture, srgb, sampler }: Slot) => `${texture}:${srgb}
 export interface Look {
   id: string;
   block: Uint8Array;
+  /** Another one each time that the block is written anew. */
+  version?: number;
   /** By slot. */
   slots: Map<string, Slot>;
   doubleSided: boolean;
@@ -45,9 +48,16 @@ interface Mesh {
   arrays: WebGLVertexArrayObject;
   /** None where they are another mesh's. */
   buffers: WebGLBuffer[];
+  /** Of numbers that change: those that are in the buffers. */
+  moving: Moving[];
   count: number;
   /** Of its box, before its place in the world. */
   middle: Vec3;
+}
+interface Moving {
+  numbers: Numbers;
+  buffer: WebGLBuffer;
+  version: number;
 }
 /** What is drawn in columns of the picture: with `instead` in place of the shown material's look. */
 interface Side {
@@ -61,8 +71,6 @@ const kDistance = 3.4;
 /** Programs that are kept; of more, the oldest that nothing is drawn with goes. */
 export const kMostPrograms = 48;
 export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough', 'Clock'];
-/** Pictures in a second of the materials' time, whatever the screen shows of them. */
-export const kPicturesPerSecond = 24;
 /** Where the time begins anew: beyond, a float counts no single pictures. */
 const kLastSecond = 2 ** 24 / kPicturesPerSecond;
 const kInputs: Record<string, string> = {
@@ -115,38 +123,6 @@ export function mostPixels(images: number): number {
   return 2 ** Math.floor(Math.log2(Math.sqrt(kMostTexels / Math.max(images, 1))));
 }
 
-/** What frameBlocks() is told beside the camera. `lod` is the last of scene_behind, whose rows run `down` the screen or up. */
-export interface Surroundings {
-  lod?: number;
-  down?: boolean;
-  brightness?: number;
-}
-
-/** The blocks of a frame, by the fields' places in templates/mesh.node (docs/bindings.md). */
-export function frameBlocks(
-  eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[], seconds: number, { lod = 0, down = false, brightness = 1 }: Surroundings = {},
-): Record<string, Uint8Array> {
-  const frame = new DataView(new ArrayBuffer(96));
-  viewProjection.forEach((x, i) => frame.setFloat32(4 * i, x, true));
-  eye.forEach((x, i) => frame.setFloat32(64 + 4 * i, x, true));
-  frame.setFloat32(76, brightness, true);
-  frame.setFloat32(80, environment.lastLevel, true);
-  frame.setInt32(84, lights.length, true);
-  const all = new Float32Array(16 * kMostLights);
-  lights.forEach((light, i) => all.set(element(light), 16 * i));
-  const through = new Float32Array(16);
-  const m = viewProjection;
-  for (let k = 0; k < 4; ++k) {
-    through[k] = 0.5 * (m[4 * k] + m[4 * k + 3]);
-    through[4 + k] = 0.5 * (m[4 * k + 3] + (down ? -1 : 1) * m[4 * k + 1]);
-    through[8 + k] = m[4 * k + 3];
-  }
-  through[12] = lod;
-  const bytes = ({ buffer }: Float32Array) => new Uint8Array(buffer);
-  const clock = new Float32Array([seconds, Math.floor(seconds * kPicturesPerSecond), 0, 0]);
-  return { Frame: new Uint8Array(frame.buffer), Lights: bytes(all), SeeThrough: bytes(through), Clock: bytes(clock) };
-}
-
 export class Viewport {
   readonly gl: WebGL2RenderingContext;
   private programs = new Map<string, Program>();
@@ -184,6 +160,10 @@ export class Viewport {
   onClock: (asked: boolean) => void = () => {};
   /** Told after each picture. */
   onDrawn: () => void = () => {};
+  /** Told before each picture; whether the next one is another. */
+  onMoment: () => boolean = () => false;
+  /** Where what moves comes to; null where nothing does. */
+  reach: { middle: Vec3; radius: number } | null = null;
   private ticked = 0;
   useBall = true;
   lights: Light[] = kStudioLights;
@@ -219,14 +199,14 @@ export class Viewport {
       const same = shapes.get(drawable.attributes);
       const mesh = same ? { ...same, drawable, buffers: [] } : this.upload(drawable, uploaded);
       shapes.set(drawable.attributes, mesh);
-      drawable.mirrored = mirrors(drawable.model);
+      drawable.mirrored ??= mirrors(drawable.model);
       return mesh;
     });
     this.fit();
   }
   fit(): void {
     const own = !this.useBall && this.meshes.length > 0;
-    const { middle, radius } = own ? bounds(this.meshes.map((m) => m.drawable)) : { middle: [0, 0, 0] as Vec3, radius: 1 };
+    const { middle, radius } = own ? this.reach ?? bounds(this.meshes.map((m) => m.drawable)) : { middle: [0, 0, 0] as Vec3, radius: 1 };
     this.middle = middle;
     this.radius = radius;
     this.orbit.distance = kDistance;
@@ -342,6 +322,7 @@ export class Viewport {
   draw(): void {
     this.pending = 0;
     this.tick();
+    if (this.onMoment()) this.redraw();
     if (this.gpu) this.gpu.paint(this, this.sized(this.gpu.canvas));
     else this.drawHere();
     this.onDrawn();
@@ -473,10 +454,21 @@ export class Viewport {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(type === 'samplerCube' ? gl.TEXTURE_CUBE_MAP : gl.TEXTURE_2D, this.textureOf(name, look, maps));
     }
+    this.refresh(mesh);
     gl.bindVertexArray(mesh.arrays);
     gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
     gl.depthMask(true);
+  }
+
+  private refresh({ moving }: Mesh): void {
+    const { gl } = this;
+    for (const each of moving) {
+      if (each.version === each.numbers.version) continue;
+      gl.bindBuffer(gl.ARRAY_BUFFER, each.buffer);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, each.numbers.data as Float32Array<ArrayBuffer>);
+      each.version = each.numbers.version!;
+    }
   }
 
   private textureOf(name: string, look: Look, maps: Maps): WebGLTexture {
@@ -657,13 +649,16 @@ export class Viewport {
     const buffers: WebGLBuffer[] = [];
     const fill = (kind: number, data: Float32Array | Uint32Array) => {
       const known = uploaded.get(data);
-      if (known) return gl.bindBuffer(kind, known);
+      if (known) gl.bindBuffer(kind, known);
+      if (known) return known;
       const buffer = gl.createBuffer()!;
       buffers.push(buffer);
       uploaded.set(data, buffer);
       gl.bindBuffer(kind, buffer);
       gl.bufferData(kind, data as Float32Array<ArrayBuffer>, gl.STATIC_DRAW);
+      return buffer;
     };
+    const moving: Moving[] = [];
     gl.bindVertexArray(arrays);
     kLocations.forEach((name, location) => {
       const attribute = drawable.attributes.get(name);
@@ -672,13 +667,14 @@ export class Viewport {
         gl.vertexAttrib4f(location, ...(name === 'COLOR_0' ? [1, 1, 1, 1] : [1, 0, 0, 1]) as [number, number, number, number]);
         return;
       }
-      fill(gl.ARRAY_BUFFER, attribute.data);
+      const buffer = fill(gl.ARRAY_BUFFER, attribute.data);
+      if (attribute.version !== undefined) moving.push({ numbers: attribute, buffer, version: attribute.version });
       gl.enableVertexAttribArray(location);
       gl.vertexAttribPointer(location, attribute.size, gl.FLOAT, false, 0, 0);
     });
     fill(gl.ELEMENT_ARRAY_BUFFER, drawable.indices);
     gl.bindVertexArray(null);
-    return { drawable, arrays, buffers, count: drawable.indices.length, middle: bounds([{ ...drawable, model: identity() }]).middle };
+    return { drawable, arrays, buffers, moving, count: drawable.indices.length, middle: bounds([{ ...drawable, model: identity() }]).middle };
   }
   private dropMesh({ arrays, buffers }: Mesh): void {
     this.gl.deleteVertexArray(arrays); // where it is another's, too, the second time does nothing

@@ -1,7 +1,8 @@
 // What a program that draws glTF needs beside shaders: a file's JSON and bytes, its triangles and its images. It knows no
 // materials: those the library reads. Whatever is wrong with a primitive leaves it out, and so does what is too much.
-import { isCount, isNear, item, list, numbersOf, once } from './json.js';
-import { compose, identity, multiply, normalMatrix, point, type Mat4, type Vec3 } from './math.js';
+import { Reader } from './accessors.js';
+import { isCount, isNear, item, list, numbersOf, once, rootsOf } from './json.js';
+import { compose, facetNormals, identity, multiply, normalMatrix, point, type Mat4, type Vec3 } from './math.js';
 
 export type { Mat4, Vec3 };
 
@@ -21,6 +22,8 @@ export interface GltfFile {
 export interface Numbers {
   data: Float32Array;
   size: number;
+  /** Of those that are written again while they are drawn: another one each time. */
+  version?: number;
 }
 
 /** A primitive and its place in the world. */
@@ -32,6 +35,11 @@ export interface Drawable {
   normal: Mat4;
   /** The model swaps front and back faces. */
   mirrored?: boolean;
+  /** The numbers of its node, and of the primitive in the node's mesh. */
+  node?: number;
+  primitive?: number;
+  /** Of an instance (EXT_mesh_gpu_instancing): its place before the node's. */
+  instance?: Mat4;
   /** The materials that it has in variants (KHR_materials_variants), by their numbers. */
   variants?: ReadonlyMap<number, number>;
   /** As floats, by the attributes' names. Primitives of one mesh at several places have one map, and those that name one
@@ -44,9 +52,6 @@ export interface Drawable {
 /** Of a file: more, which a few kilobytes can ask for, are left out. */
 const kMostDrawables = 100_000;
 const kMostVariants = 10_000;
-/** Numbers that are read of a file's accessors, or made for its primitives: 256 MB. */
-const kMostNumbers = 2 ** 26;
-
 function objectFrom(bytes: Uint8Array): any {
   const json = JSON.parse(new TextDecoder().decode(bytes));
   if (typeof json !== 'object' || json === null) throw new Error('the JSON is no object');
@@ -238,80 +243,6 @@ export async function image(file: GltfFile, index: number, most = Infinity): Pro
   }
 }
 
-type Stored = Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array | Float32Array;
-/** By component type: arrays, their elements' bytes, and the number that stands for 1 where it is normalized. */
-const kArrays = new Map<unknown, [new (buffer: ArrayBuffer) => Stored, number, number]>([
-  [5120, [Int8Array, 1, 127]], [5121, [Uint8Array, 1, 255]], [5122, [Int16Array, 2, 32767]], [5123, [Uint16Array, 2, 65535]],
-  [5125, [Uint32Array, 4, 1]], [5126, [Float32Array, 4, 1]],
-]);
-const kTypes: unknown[] = ['SCALAR', 'VEC2', 'VEC3', 'VEC4'];
-
-/** What is read of a file: each accessor once, however many primitives have it. */
-class Reader {
-  private left = kMostNumbers;
-  private readonly floats = new Map<unknown, Numbers | null>();
-  private readonly places = new Map<unknown, Float32Array | null>();
-  private readonly corners = new Map<unknown, Uint32Array | null>();
-
-  constructor(readonly file: GltfFile) {}
-
-  /** Takes room for so many more numbers, if there is that much. */
-  takes(count: number): boolean {
-    if (count > this.left) return false;
-    this.left -= count;
-    return true;
-  }
-  /** An accessor as floats; what is normalized is from -1 or 0 to 1. */
-  numbers(index: unknown): Numbers | null {
-    return once(this.floats, index, () => numbers(this, index));
-  }
-  /** As the positions of vertices, each of them a place; null where one is none. */
-  positions(index: unknown): Float32Array | null {
-    return once(this.places, index, () => {
-      const read = this.numbers(index);
-      return read?.size === 3 && read.data.every(isNear) ? read.data : null;
-    });
-  }
-  /** As the numbers of vertices. */
-  indices(index: unknown): Uint32Array | null {
-    return once(this.corners, index, () => {
-      const read = stored(this, index);
-      return read?.size === 1 ? new Uint32Array(read.data) : null;
-    });
-  }
-}
-
-/** The elements of an accessor one behind the other, as they are stored; null where it has none that can be read. */
-function stored(from: Reader, index: unknown): { data: Stored; size: number; largest: number } | null {
-  const { file } = from;
-  const of = item(file.json.accessors, index);
-  const [Kind, component, largest] = kArrays.get(of?.componentType) ?? [];
-  const size = kTypes.indexOf(of?.type) + 1;
-  if (!Kind || !component || !largest || !size || of.sparse || !isCount(of.count) || of.count === 0) return null;
-  const bytes = bufferView(file, of.bufferView);
-  if (!bytes) return null;
-  const width = size * component;
-  const stride = file.json.bufferViews[of.bufferView].byteStride ?? width;
-  const start = of.byteOffset ?? 0;
-  if (!isCount(start) || !isCount(stride) || stride < width || start + stride * (of.count - 1) + width > bytes.length) return null;
-  if (!from.takes(of.count * size)) return null;
-  const packed = new Uint8Array(width * of.count);
-  if (stride === width) packed.set(bytes.subarray(start, start + packed.length));
-  else for (let i = 0; i < of.count; ++i) packed.set(bytes.subarray(start + i * stride, start + i * stride + width), i * width);
-  return { data: new Kind(packed.buffer), size, largest };
-}
-
-function numbers(from: Reader, index: unknown): Numbers | null {
-  const read = stored(from, index);
-  if (!read) return null;
-  const { data, size, largest } = read;
-  if (data instanceof Float32Array) return { data, size };
-  if (from.file.json.accessors[index as number].normalized !== true) return { data: new Float32Array(data), size };
-  const floats = new Float32Array(data.length);
-  for (let i = 0; i < data.length; ++i) floats[i] = Math.max(data[i] / largest, -1);
-  return { data: floats, size };
-}
-
 /** The corners of the triangles, three by three, from those of a list, a strip or a fan; null for lines and points. */
 function triangles(mode: number, corners: Uint32Array): Uint32Array | null {
   if (mode === 4) return corners.length % 3 === 0 ? corners : corners.subarray(0, corners.length - (corners.length % 3));
@@ -326,9 +257,9 @@ function triangles(mode: number, corners: Uint32Array): Uint32Array | null {
   return made;
 }
 
-type Shape = Pick<Drawable, 'material' | 'variants' | 'attributes' | 'indices'>;
+type Shape = Pick<Drawable, 'material' | 'variants' | 'attributes' | 'indices' | 'primitive'>;
 
-function primitive(from: Reader, of: any): Shape | null {
+function shapeOf(from: Reader, of: any, primitive: number): Shape | null {
   const material = of?.material ?? -1;
   const positions = from.positions(of?.attributes?.POSITION);
   if (!positions || (material !== -1 && !isCount(material))) return null;
@@ -337,7 +268,7 @@ function primitive(from: Reader, of: any): Shape | null {
   for (const [name, index] of Object.entries(of.attributes)) {
     const read = from.numbers(index);
     // One that ends before the vertices do cannot be drawn with.
-    if (read && read.data.length === read.size * vertices) attributes.set(name, read);
+    if (read && read.size <= 4 && read.data.length === read.size * vertices) attributes.set(name, read);
   }
   const given = of.indices === undefined ? null : from.indices(of.indices);
   if (of.indices !== undefined && !given) return null;
@@ -351,7 +282,7 @@ function primitive(from: Reader, of: any): Shape | null {
     attributes.set('NORMAL', { data: facetNormals(positions, indices), size: 3 });
   }
   const variants = variantsOf(of);
-  return { material, attributes, indices, ...(variants.size > 0 && { variants }) };
+  return { material, primitive, attributes, indices, ...(variants.size > 0 && { variants }) };
 }
 
 function variantsOf(primitive: any): Map<number, number> {
@@ -363,10 +294,11 @@ function variantsOf(primitive: any): Map<number, number> {
   return found;
 }
 
-/** Where a node's mesh is (EXT_mesh_gpu_instancing): at the node, or at each of its instances; null where they cannot be read. */
-function placesOf(from: Reader, node: any, world: Mat4): Mat4[] | null {
+/** Where a node's mesh is (EXT_mesh_gpu_instancing): at the node, or at each of its instances, before the node's place; null where they
+ * cannot be read. */
+function placesOf(from: Reader, node: any): (Mat4 | undefined)[] | null {
   const attributes = node.extensions?.EXT_mesh_gpu_instancing?.attributes;
-  if (typeof attributes !== 'object' || attributes === null) return [world];
+  if (typeof attributes !== 'object' || attributes === null) return [undefined];
   const [t, r, s] = (['TRANSLATION', 'ROTATION', 'SCALE'] as const).map((name) => (attributes[name] === undefined ? undefined : from.numbers(attributes[name])));
   if ([t, r, s].includes(null) || (t && t.size !== 3) || (r && r.size !== 4) || (s && s.size !== 3)) return null;
   const counts = [t, r, s].flatMap((each) => (each ? [each.data.length / each.size] : []));
@@ -374,27 +306,11 @@ function placesOf(from: Reader, node: any, world: Mat4): Mat4[] | null {
   // Many nodes may name one accessor.
   if (!from.takes(16 * count)) return null;
   const at = (of: Numbers | null | undefined, i: number, otherwise: number[]) => (of ? [...of.data.subarray(of.size * i, of.size * (i + 1))] : otherwise);
-  return Array.from({ length: count }, (_, i) => multiply(world, compose(at(t, i, [0, 0, 0]), at(r, i, [0, 0, 0, 1]), at(s, i, [1, 1, 1]))));
+  return Array.from({ length: count }, (_, i) => compose(at(t, i, [0, 0, 0]), at(r, i, [0, 0, 0, 1]), at(s, i, [1, 1, 1])));
 }
 
-/** The sum of the triangles' normals at each vertex. */
-function facetNormals(p: Float32Array, indices: Uint32Array): Float32Array {
-  const normals = new Float32Array(p.length);
-  for (let t = 0; t + 2 < indices.length; t += 3) {
-    const [a, b, c] = [3 * indices[t], 3 * indices[t + 1], 3 * indices[t + 2]];
-    const [ux, uy, uz] = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
-    const [vx, vy, vz] = [p[c] - p[a], p[c + 1] - p[a + 1], p[c + 2] - p[a + 2]];
-    for (const at of [a, b, c]) {
-      normals[at] += uy * vz - uz * vy;
-      normals[at + 1] += uz * vx - ux * vz;
-      normals[at + 2] += ux * vy - uy * vx;
-    }
-  }
-  return normals;
-}
-
-/** Calls with every node of the default scene and where it is in the world. */
-export function eachNode(file: GltfFile, use: (node: any, world: Mat4) => void): void {
+/** Calls with every node of the default scene, where it is in the world, and its number. */
+export function eachNode(file: GltfFile, use: (node: any, world: Mat4, index: number) => void): void {
   const { nodes, scenes, scene = 0 } = file.json;
   const seen = new Set<number>(); // a node has one parent, and a broken file may go in circles
   const open: [number, Mat4][] = []; // a chain of nodes may be longer than the stack of calls is deep
@@ -402,7 +318,7 @@ export function eachNode(file: GltfFile, use: (node: any, world: Mat4) => void):
     for (let i = indices.length; i-- > 0; ) open.push([indices[i], parent]); // the last is taken first
   };
   const roots = item(scenes, scene)?.nodes;
-  push(roots === undefined ? list(nodes).map((_, i) => i) : list(roots), identity());
+  push(roots === undefined ? rootsOf(list(nodes)) : list(roots), identity());
   for (let next = open.pop(); next; next = open.pop()) {
     const [index, parent] = next;
     const node = item(nodes, index);
@@ -414,7 +330,7 @@ export function eachNode(file: GltfFile, use: (node: any, world: Mat4) => void):
       : compose(numbersOf(node.translation, 3) ?? [0, 0, 0], numbersOf(node.rotation, 4) ?? [0, 0, 0, 1], numbersOf(node.scale, 3) ?? [1, 1, 1]);
     const world = multiply(parent, local);
     if (!world.every(isNear)) continue; // it would take what is drawn beside it out of sight
-    use(node, world);
+    use(node, world, index);
     push(list(node.children), world);
   }
 }
@@ -424,17 +340,18 @@ export function geometry(file: GltfFile): Drawable[] {
   const found: Drawable[] = [];
   const from = new Reader(file);
   const made = new Map<any, Shape[]>();
-  eachNode(file, (node, model) => {
+  eachNode(file, (node, model, index) => {
     const mesh = item(file.json.meshes, node.mesh);
     const room = kMostDrawables - found.length;
     if (!mesh || room === 0) return;
     // What is left out of a mesh is not come upon again at its other nodes.
-    const shapes = once(made, mesh, () => list(mesh.primitives).map((of) => primitive(from, of)).filter((shape) => shape !== null));
+    const shapes = once(made, mesh, () => list(mesh.primitives).map((of, i) => shapeOf(from, of, i)).filter((shape) => shape !== null));
     if (shapes.length === 0) return;
-    for (const place of placesOf(from, node, model) ?? []) {
+    for (const instance of placesOf(from, node) ?? []) {
+      const place = instance ? multiply(model, instance) : model;
       if (!place.every(isNear)) continue;
       const normal = normalMatrix(place);
-      for (const shape of shapes.slice(0, kMostDrawables - found.length)) found.push({ model: place, normal, ...shape });
+      for (const shape of shapes.slice(0, kMostDrawables - found.length)) found.push({ model: place, normal, node: index, ...(instance && { instance }), ...shape });
     }
   });
   return found;

@@ -19,7 +19,14 @@ export function numbersOf(x: unknown, size: number): number[] | undefined {
 }
 
 /** What is known of a key; it is made where nothing is. */
-export function once<K, V>(known: Map<K, V>, key: K, make: () => V): V {
+export function once<K, V>(known: { has(key: K): boolean; get(key: K): V | undefined; set(key: K, value: V): unknown }, key: K, make: () => V): V {
   if (!known.has(key)) known.set(key, make());
   return known.get(key)!;
+}
+
+/** Of a file's nodes the numbers of those that are nobody's children, and then of all: some may only be in circles. */
+export function rootsOf(nodes: any[]): number[] {
+  const children = new Set(nodes.flatMap((node) => list(node?.children)));
+  const all = nodes.map((_, i) => i);
+  return [...all.filter((i) => !children.has(i)), ...all];
 }

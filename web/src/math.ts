@@ -77,3 +77,19 @@ export function mirrors(m: Mat4): boolean {
   const column = (i: number): Vec3 => [m[4 * i], m[4 * i + 1], m[4 * i + 2]];
   return dot(column(0), cross(column(1), column(2))) < 0;
 }
+
+/** The sum of the triangles' normals at each vertex. */
+export function facetNormals(p: Float32Array, indices: Uint32Array): Float32Array {
+  const normals = new Float32Array(p.length);
+  for (let t = 0; t + 2 < indices.length; t += 3) {
+    const [a, b, c] = [3 * indices[t], 3 * indices[t + 1], 3 * indices[t + 2]];
+    const [ux, uy, uz] = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
+    const [vx, vy, vz] = [p[c] - p[a], p[c + 1] - p[a + 1], p[c + 2] - p[a + 2]];
+    for (const at of [a, b, c]) {
+      normals[at] += uy * vz - uz * vy;
+      normals[at + 1] += uz * vx - ux * vz;
+      normals[at + 2] += ux * vy - uy * vx;
+    }
+  }
+  return normals;
+}

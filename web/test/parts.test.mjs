@@ -19,7 +19,8 @@ const { readHdr, radianceOf } = await part('hdr');
 const { makeEnvironment, Turned } = await part('environment');
 const { element, fileLights } = await part('lights');
 const { halves } = await part('gpu');
-const { frameBlocks, kBlocks } = await part('viewport');
+const { frameBlocks } = await part('frame');
+const { kBlocks } = await part('viewport');
 const { bounds, eachNode, geometry, openGltf } = await part('gltf', 'web/src');
 
 /** A .hdr file of colours that RGBE holds exactly; rows are run-length coded where `runs`. */
@@ -219,6 +220,10 @@ test('nodes that go in circles are walked once', () => {
   let walked = 0;
   eachNode(openGltf('a.gltf', Buffer.from(JSON.stringify(json))), () => ++walked);
   assert.equal(walked, 2);
+  // Without scenes those that are nobody's children begin.
+  const places = [];
+  eachNode(openGltf('a.gltf', Buffer.from(JSON.stringify({ nodes: [{}, { children: [0], translation: [5, 0, 0] }] }))), (_, world, index) => places.push([index, world[12]]));
+  assert.deepEqual(places, [[1, 5], [0, 5]]);
 });
 
 test('half floats are rounded to the nearest', () => {

@@ -157,9 +157,11 @@ test('two fingers come nearer and move the picture; one turns it', () =>
     const first = await view(page);
     await send('touchStart', [[cx - 10, cy], [cx + 10, cy]]);
     for (const apart of [14, 17, 20]) await send('touchMove', [[cx - apart, cy], [cx + apart, cy]]);
+    await painted(page); // moves of fingers come with the pictures
     const near = await view(page);
     assert.ok(Math.abs(near.distance - first.distance / 2) < 0.1 && near.yaw === first.yaw, JSON.stringify(near));
     await send('touchMove', [[cx, cy], [cx + 40, cy]]);
+    await painted(page);
     await send('touchEnd', []);
     const moved = await view(page);
     assert.ok(moved.middle[0] < -0.1 && Math.abs(moved.distance - near.distance) < 0.1, JSON.stringify(moved));
