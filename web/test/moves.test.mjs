@@ -278,6 +278,10 @@ test('an animation plays, stands and is stepped through by keys', () => open([],
   assert.equal(await x(), 0);
   await page.click('#play-clip');
   await page.waitForFunction(() => window.lacquerPage.document.drawables[0].model[12] > 0);
+  // A low window has room for the picture still.
+  await page.setViewportSize(kSmall);
+  const height = await page.evaluate(() => window.lacquerPage.viewport.canvas.clientHeight);
+  assert.ok(height > 50, `${height}`);
 }, { size: kTall }));
 
 test('what is wrong with what moves is said, and the rest is drawn', () => open([], async (page) => {
