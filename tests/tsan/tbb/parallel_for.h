@@ -44,11 +44,4 @@ void parallel_for(const blocked_range<Index>& range, const Body& body) {
   if (thrown) std::rethrow_exception(thrown);
 }
 
-template <class Index, class Body>
-void parallel_for(Index first, Index last, const Body& body) {
-  parallel_for(blocked_range<Index>(first, last, 1), [&](const blocked_range<Index>& range) {
-    for (Index i = range.begin(); i < range.end(); ++i) body(i);
-  });
-}
-
 }  // namespace tbb

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "tbb/global_control.h"
+
 namespace tbb {
 
 class task_arena {
@@ -10,5 +12,9 @@ public:
     work();
   }
 };
+
+namespace this_task_arena {
+inline int max_concurrency() { return static_cast<int>(global_control::threads()); }
+}  // namespace this_task_arena
 
 }  // namespace tbb

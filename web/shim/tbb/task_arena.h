@@ -11,4 +11,8 @@ public:
   }
 };
 
+namespace this_task_arena {
+inline int max_concurrency() { return 1; }
+}  // namespace this_task_arena
+
 }  // namespace tbb
