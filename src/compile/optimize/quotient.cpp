@@ -52,8 +52,7 @@ bool eliminate(std::array<Row, kMostUnknowns>& a, size_t n) {
 /// The least squares of w (P - f Q) / Q, where the last Q is the one before.
 bool leastSquares(const std::vector<QuotientPoint>& points, const std::vector<double>& weights,
                   Halves& halves) {
-  const size_t over = halves.over.size();
-  const size_t n = over + halves.under.size() - 1;
+  const size_t over = halves.over.size(), n = over + halves.under.size() - 1;
   std::array<Row, kMostUnknowns> equations{};
   for (size_t j = 0; j < points.size(); ++j) {
     const QuotientPoint& point = points[j];
@@ -71,10 +70,8 @@ bool leastSquares(const std::vector<QuotientPoint>& points, const std::vector<do
     }
   }
   if (!eliminate(equations, n)) return false;
-  for (size_t k = 0; k < n; ++k) {
-    const double x = equations[k][n] / equations[k][k];
-    (k < over ? halves.over[k] : halves.under[k - over + 1]) = x;
-  }
+  for (size_t k = 0; k < n; ++k)
+    (k < over ? halves.over[k] : halves.under[k - over + 1]) = equations[k][n] / equations[k][k];
   return true;
 }
 
@@ -122,13 +119,10 @@ std::vector<double> inX(const std::vector<double>& powers, double mid, double ha
   std::vector<double> result;
   for (size_t k = powers.size(); k-- > 0;) {
     // The result times t, and the next number.
-    std::vector<double> next(result.size() + 1, 0);
-    for (size_t i = 0; i < result.size(); ++i) {
-      next[i + 1] += result[i] / half;
-      next[i] -= result[i] * mid / half;
-    }
-    next[0] += powers[k];
-    result = std::move(next);
+    result.push_back(0);
+    for (size_t i = result.size(); i-- > 0;)
+      result[i] = (i > 0 ? result[i - 1] / half : 0) - result[i] * mid / half;
+    result[0] += powers[k];
   }
   return result;
 }
@@ -137,8 +131,7 @@ double asFloat(double x) { return static_cast<double>(static_cast<float>(x)); }
 
 /// P / Q as a polynomial and what is left of the division, one of whose numbers is 1.
 bool divide(Halves halves, const Shape& shape, size_t c, Form& form) {
-  std::vector<double>& p = halves.over;
-  std::vector<double>& q = halves.under;
+  auto& [p, q] = halves;
   for (size_t k = shape.terms; k-- > 0;) {
     const double whole = p[k + shape.divisor] / q[shape.divisor];
     for (size_t i = 0; i <= shape.divisor; ++i) p[k + i] -= whole * q[i];
@@ -170,8 +163,7 @@ std::vector<double> pointsOfDomain() {
 }  // namespace
 
 std::optional<Form> quotient(Curve& curve, const Range& domain, const Shape& shape) {
-  const double half = (domain.hi - domain.lo) / 2;
-  const double mid = domain.lo + half;
+  const double half = (domain.hi - domain.lo) / 2, mid = domain.lo + half;
   const auto width = static_cast<size_t>(curve.width());
   std::vector<std::vector<QuotientPoint>> points(width);
   for (const double t : pointsOfDomain()) {
