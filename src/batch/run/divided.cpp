@@ -98,7 +98,7 @@ std::optional<Key> dividedKey(const std::vector<const Structure*>& structures, c
     if (why_not.empty() && driver.empty()) return std::nullopt;
     key.text(why_not).text(driver);
   }
-  // Whatever the order in which they were met.
+  // Sorted: the key rests on no order of the files.
   std::set<Key> sorted;
   for (const Structure* structure : structures) sorted.insert(structure->key);
   key.number(static_cast<uint64_t>(sorted.size()));

@@ -1,5 +1,5 @@
-// What Programs decides for a run, and how the cache keeps it: a run whose materials differ from an earlier
-// one's in numbers alone need not measure anything.
+// The division of a run's structures among programs, as the cache keeps it: a run whose materials differ from
+// an earlier one's in numbers alone measures nothing.
 #pragma once
 
 #include <string>

@@ -230,7 +230,7 @@ Sharing::Share Programs::bring(Traced& own, const material::Material* material,
   if (place == group.places.end()) return {};
   const programs::Fill& fill = group.united.fills[place->second];
   own.graph = programs::instance(group.united, place->second, more);
-  // What a graph brings, a surface's of MaterialX too, comes from no property.
+  // Numbers of a graph, and of a surface of MaterialX, come from no property.
   own.numbers.assign(own.graph.parameters.size(), std::nullopt);
   for (size_t i = 0; i < own.numbers.size(); ++i) {
     const auto at = fill.numbers[i].own ? more.findParameter(own.graph.parameters[i].name) : std::nullopt;

@@ -43,7 +43,7 @@ public:
   /// After find() alone: a shader whose files are all as an earlier run left them; null when they may not be.
   const ShaderReport* untouched(const std::string& id) const;
 
-  /// What this run has written to an output. Its stamp may be so young that another change could go unseen:
+  /// The digest of an output that this run wrote. Its stamp may be so young that another change goes unseen:
   /// then the next run looks at the bytes, too.
   void wrote(const std::string& path, const Key& content) { written_[path] = content; }
   /// The same of a file that is untouched(): null where its stamp is enough.

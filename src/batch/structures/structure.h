@@ -112,7 +112,7 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
                  const passes::OtherLayout& other = {});
 /// That of a structure's shader.
 passes::OtherLayout layoutOf(const Structure& structure);
-/// What it reads is among what they read.
+/// Adds the stages in which the structure's shader reads its blocks and textures.
 void addReader(const Structure& structure, passes::Readers& readers);
 
 /// Graph::structure() of a flat, checked graph: of what the shader is made of and of nothing else, so that

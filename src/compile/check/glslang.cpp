@@ -172,7 +172,7 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, const targets::Row
   return diagnostic;
 }
 
-/// What DXC says of the model that is compiled for; a text may say otherwise. And a function that glslang
+/// DXC's macros of the shader model; a text may define others. And a function that glslang
 /// does not know: of a number that differs among the fragments.
 constexpr const char* kShaderModel =
     "#define __SHADER_TARGET_MAJOR 6\n#define __SHADER_TARGET_MINOR 0\n"

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array kBothStages = {ir::Stage::Vertex, ir::Stage::Fragment};
 
-/// What the outputs of a stage reach, and what programs beside it read there.
+/// Blocks, textures and inputs that a stage reads, or programs beside it in that stage.
 struct Used {
   std::vector<bool> blocks, textures, attributes, varyings;
   std::vector<std::string> slots;  ///< by texture: what the graph calls it
@@ -36,7 +36,7 @@ Used usedBy(const ir::Module& module, ir::Stage stage) {
     if (input.kind == ir::InputKind::Attribute) used.attributes[input.field] = true;
     if (input.kind == ir::InputKind::Varying) used.varyings[input.field] = true;
   }
-  // What programs beside it read is bound for them, too.
+  // Blocks and textures of programs beside it are bound as well.
   const bool ir::Stages::*const of = stage == ir::Stage::Vertex ? &ir::Stages::vertex : &ir::Stages::fragment;
   for (size_t i = 0; i < module.blocks.size(); ++i)
     used.blocks[i] = used.blocks[i] || module.blocks[i].others.*of;
