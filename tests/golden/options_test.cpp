@@ -128,8 +128,13 @@ TEST_P(EveryOption, validatesInAllExamples) {
     EXPECT_TRUE(id.starts_with(template_name + "-")) << id;
     EXPECT_EQ(shader["template"], template_name);
     EXPECT_EQ(shader["files"].size(), options.targets.size()) << id;
+    // Arrays of textures are an extension of wgpu's that Tint does not know.
+    const bool arrays = std::ranges::any_of(shader["textures"],
+                                            [](const Json& texture) { return texture.contains("array"); });
+    EXPECT_TRUE(!arrays || options.binding == BindingModel::Bindless) << id;
+    const bool wgsl_validated = check::haveTint() && !arrays;
     for (const auto& [target, files] : shader["files"].items()) {
-      EXPECT_EQ(shader["validated"][target], target != "wgsl" || check::haveTint()) << id << " " << target;
+      EXPECT_EQ(shader["validated"][target], target != "wgsl" || wgsl_validated) << id << " " << target;
       EXPECT_EQ(files.size(), mesh ? 2u : 1u) << id << " " << target;
     }
     // A record has the numbers of the textures besides.
