@@ -9,7 +9,7 @@ import '@babylonjs/core/Materials/standardMaterial.js';
 import '@babylonjs/loaders/glTF/2.0/index.js';
 import {
   AppendSceneAsync, Bone, Camera, Color3, Color4, Constants, DirectionalLight, Engine, HDRCubeTexture, HemisphericLight,
-  ImageProcessingConfiguration, LoadAssetContainerAsync, Matrix, Mesh, MeshBuilder, MorphTarget, MorphTargetManager, PBRMaterial, PointLight,
+  ImageProcessingConfiguration, LoadAssetContainerAsync, Matrix, Mesh, MeshBuilder, MorphTarget, MorphTargetManager, PBRMaterial, Plane, PointLight,
   Quaternion, RawTexture, RenderTargetTexture, Scene, ShadowGenerator, Skeleton, SpotLight, StandardMaterial, TargetCamera, TransformNode,
   Vector3, VertexBuffer, VertexData,
 } from '@babylonjs/core';
@@ -20,7 +20,7 @@ import * as lacquered from '@lacquer-shaders/lacquer/babylon';
 
 const BABYLON = {
   AppendSceneAsync, Bone, Camera, Color3, Color4, Constants, DirectionalLight, Engine, HDRCubeTexture, HemisphericLight,
-  ImageProcessingConfiguration, LoadAssetContainerAsync, Matrix, Mesh, MeshBuilder, MorphTarget, MorphTargetManager, PBRMaterial, PointLight,
+  ImageProcessingConfiguration, LoadAssetContainerAsync, Matrix, Mesh, MeshBuilder, MorphTarget, MorphTargetManager, PBRMaterial, Plane, PointLight,
   Quaternion, RawTexture, RenderTargetTexture, Scene, ShadowGenerator, Skeleton, SpotLight, StandardMaterial, TargetCamera, TransformNode,
   Vector3, VertexBuffer, VertexData, registerGLTFExtension, unregisterGLTFExtension,
 };

@@ -1,6 +1,7 @@
 // A material of Babylon.js whose shader is Lacquer's.
 import '@babylonjs/core/Engines/Extensions/engine.uniformBuffer.js';
 import '@babylonjs/core/Engines/Extensions/engine.rawTexture.js';
+import { VertexBuffer } from '@babylonjs/core/Buffers/buffer.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { ImageProcessingConfiguration } from '@babylonjs/core/Materials/imageProcessingConfiguration.js';
 import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
@@ -28,9 +29,26 @@ import { drawnLights, lightsOf } from './lights.js';
 import { bindShadows, castingOn, prepareShadows } from './shadows.js';
 import { babylonText, kindOf, kKinds, kOptional, kUniforms } from './text.js';
 
+const hasColors = (mesh: AbstractMesh): boolean => mesh.useVertexColors && mesh.isVerticesDataPresent(VertexBuffer.ColorKind);
+const hasInstanceColors = (mesh: AbstractMesh): boolean =>
+  (mesh.hasInstances || mesh.hasThinInstances) && mesh.isVerticesDataPresent(VertexBuffer.ColorInstanceKind);
+
 /** The attributes of a mesh that its shader may use. Skins, morph targets and instances are Babylon.js's matter. */
 export function attributesOf(mesh: AbstractMesh): Attribute[] {
-  return kOptional.filter((attribute) => mesh.isVerticesDataPresent(kKinds[attribute].kind) && (attribute !== 'COLOR_0' || mesh.useVertexColors));
+  return kOptional.filter((attribute) =>
+    attribute === 'COLOR_0' ? hasColors(mesh) || hasInstanceColors(mesh) : mesh.isVerticesDataPresent(kKinds[attribute].kind));
+}
+
+/** What of colours ShaderMaterial does not say of a mesh: it knows those of thin instances. */
+function colorsOf(mesh: AbstractMesh | undefined, instances: boolean | undefined): { attributes: string[]; defines: string[] } {
+  const said = { attributes: [] as string[], defines: [] as string[] };
+  if (!mesh) return said;
+  if (hasColors(mesh)) said.defines.push('LACQUER_COLORS');
+  if (instances && !mesh.hasThinInstances && hasInstanceColors(mesh)) {
+    said.attributes.push(VertexBuffer.ColorInstanceKind);
+    said.defines.push('INSTANCESCOLOR');
+  }
+  return said;
 }
 
 /** One texel in the place of an image that is not there. */
@@ -136,8 +154,8 @@ export interface MaterialOptions {
   messages?: Message[];
 }
 
-/** Draws a graph on any mesh. It has the lights, the fog and the image processing of its scene, skins, morph targets, instances and
- * thin instances; the surroundings are those of setEnvironment(), or the scene's `environmentTexture`. Shadows fall from it and on
+/** Draws a graph on any mesh. It has the lights, the fog and the image processing of its scene, clipping planes, skins, morph
+ * targets, instances and thin instances with their colours; the surroundings are those of setEnvironment(), or the scene's `environmentTexture`. Shadows fall from it and on
  * it. */
 export class LacquerMaterial extends ShaderMaterial {
   readonly isLacquerMaterial = true;
@@ -159,7 +177,7 @@ export class LacquerMaterial extends ShaderMaterial {
     { textures = {}, options = {}, messages = [] }: MaterialOptions = {},
     programs = new Programs(graph, options, messages),
   ) {
-    super(name, scene, {}, { attributes: [], uniforms: [], uniformBuffers: [], samplers: [], defines: [] });
+    super(name, scene, {}, { attributes: [], uniforms: [], uniformBuffers: [], samplers: [], defines: [], useClipPlane: null });
     const engine = scene.getEngine();
     if (engine.isWebGPU || engine.version < 2) throw new TypeError('LacquerMaterial is drawn by an Engine with WebGL 2');
     this.programs = programs;
@@ -247,10 +265,11 @@ export class LacquerMaterial extends ShaderMaterial {
     const uniformBuffers = this.blocksOf(made).names;
     const shadows = mesh ? prepareShadows(mesh, this.castingOn(mesh, made), { uniforms, samplers, uniformBuffers }) : [];
     const on = Object.entries(colors).filter(([, value]) => value !== false && value !== undefined);
+    const colored = colorsOf(mesh, useInstances);
     Object.assign(this.options, {
-      attributes: made.attributes, uniforms, samplers, uniformBuffers,
+      attributes: [...made.attributes, ...colored.attributes], uniforms, samplers, uniformBuffers,
       defines: [
-        `LACQUER_${made.shader.id.replace(/\W/g, '_')}`, ...made.defines,
+        `LACQUER_${made.shader.id.replace(/\W/g, '_')}`, ...made.defines, ...colored.defines,
         ...on.map(([name, value]) => (value === true ? name : `${name} ${value}`)), ...shadows,
       ],
     });

@@ -27,7 +27,7 @@ export const kUniforms = ['world', 'view', 'normalMatrix', 'lacquer_hand', 'lacq
 const kDeclarations = [
   '#include<instancesDeclaration>', '#include<bonesDeclaration>', '#include<bakedVertexAnimationDeclaration>',
   '#include<morphTargetsVertexGlobalDeclaration>', '#include<morphTargetsVertexDeclaration>[0..maxSimultaneousMorphTargets]',
-  '#include<fogVertexDeclaration>',
+  '#include<fogVertexDeclaration>', '#include<clipPlaneVertexDeclaration>', '#include<logDepthDeclaration>',
   'uniform mat4 normalMatrix;', 'uniform mat4 view;', 'uniform float lacquer_hand;',
 ];
 const kMoving = [
@@ -45,6 +45,12 @@ const kNormals = 'mat4(transpose(inverse(mat3(finalWorld))))';
 /** Elements of the block Lights. */
 export const lightsIn = (shader: Interface): number => shader.uniforms.find(({ block }) => block === 'Lights')?.array ?? 1;
 
+/** A mesh without colours of its own is white; those of instances come on top, as in Babylon.js. */
+const colour = (variable: string, own: string): string[] => [
+  '#ifdef LACQUER_COLORS', `${variable} = ${own};`, '#else', `${variable} = vec4(1.0);`, '#endif',
+  '#if defined(INSTANCESCOLOR) && defined(INSTANCES)', `${variable} *= instanceColor;`, '#endif',
+];
+
 function vertexText(essl: string, shader: Interface): string {
   const attributes = ['attribute vec3 position;'];
   const moved = ['vec3 positionUpdated = position;'];
@@ -54,7 +60,8 @@ function vertexText(essl: string, shader: Interface): string {
     const { kind = kindOf(semantic), type: stored = type, moved: target } = kKinds[semantic] ?? {};
     if (kind !== 'position') attributes.push(`attribute ${stored} ${kind};`);
     if (target?.under) moved.push(`${stored} ${target.as} = ${kind};`);
-    fill.push(`${variable} = ${target?.as ?? kind};`);
+    if (semantic === 'COLOR_0') fill.push(...colour(variable, target?.as ?? kind));
+    else fill.push(`${variable} = ${target?.as ?? kind};`);
     if (semantic === 'TANGENT') fill.push(`${variable}.w *= lacquer_hand;`);
     return `${type} ${variable};`;
   });
@@ -66,7 +73,8 @@ function vertexText(essl: string, shader: Interface): string {
       '#ifdef INSTANCES', `object.normal_matrix = ${kNormals};`, '#endif',
       '#if NUM_BONE_INFLUENCERS>0', `object.normal_matrix = ${kNormals};`, '#endif',
     ] : []),
-    'surface();', 'vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);', ...shadows.fill, '#include<fogVertex>', '}', '',
+    'surface();', 'vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);', ...shadows.fill,
+    '#include<clipPlaneVertex>', '#include<fogVertex>', '#include<logDepthVertex>', '}', '',
   ].join('\n');
 }
 
@@ -93,12 +101,12 @@ function fragmentText(essl: string, shader: Interface): string {
     ...(text.includes('ObjectBlock object;') ? ['uniform mat4 world;', 'uniform mat4 normalMatrix;'] : []),
     'uniform float lacquer_visibility;',
     '#define PBR', '#include<helperFunctions>', '#include<imageProcessingDeclaration>', '#include<imageProcessingFunctions>',
-    '#include<fogFragmentDeclaration>', ...shadows.functions,
-    'void main() {', ...shadows.fill,
+    '#include<fogFragmentDeclaration>', '#include<clipPlaneFragmentDeclaration>', '#include<logDepthDeclaration>', ...shadows.functions,
+    'void main() {', '#include<clipPlaneFragment>', ...shadows.fill,
     ...(text.includes('ObjectBlock object;') ? ['object.model = world;', 'object.normal_matrix = normalMatrix;'] : []),
     'surface();', `vec4 color = out_${color.name};`, '#include<fogFragment>',
     '#ifndef IMAGEPROCESSINGPOSTPROCESS', 'color.rgb = max(color.rgb, 0.0);', 'color = applyImageProcessing(color);', '#endif',
-    'color.a *= lacquer_visibility;', `out_${color.name} = color;`, '}', '',
+    'color.a *= lacquer_visibility;', `out_${color.name} = color;`, '#include<logDepthFragment>', '}', '',
   ].join('\n');
 }
 
