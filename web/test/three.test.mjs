@@ -237,7 +237,7 @@ test('numbers change without a program, and what was made is given back', async 
   assert.ok(at.names.includes('base_color_factor'));
 });
 
-/** Where a mesh is seen, by its own material and by one of three.js: an array of both. */
+/** Which colours a mesh shows where, by its own material and by one of three.js: an array of both. */
 async function covered(kind) {
   const base = quad();
   const { geometry } = base;
@@ -260,6 +260,17 @@ async function covered(kind) {
     geometry.morphTargetsRelative = true;
     mesh = new THREE.Mesh(geometry);
     mesh.morphTargetInfluences = [1, 0.8];
+  } else if (kind.startsWith('batch')) {
+    mesh = new THREE.BatchedMesh(3, 16, 32);
+    geometry.deleteAttribute('tangent');
+    const small = new THREE.CircleGeometry(0.7, 5);
+    const [first, second] = [mesh.addGeometry(geometry), mesh.addGeometry(small)];
+    for (let i = 0; i < 3; ++i) {
+      const turn = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), i);
+      const id = mesh.addInstance(i === 1 ? second : first);
+      mesh.setMatrixAt(id, new THREE.Matrix4().compose(new THREE.Vector3(0.5 * i - 0.5, 0.2 * i, -i), turn, new THREE.Vector3(0.1 + 0.1 * i, 0.2, 1)));
+      if (kind.endsWith('colours')) mesh.setColorAt(id, new THREE.Color().setRGB(...[[1, 0, 0], [0, 1, 0], [1, 0, 1]][i]));
+    }
   } else if (kind === 'instances') {
     mesh = new THREE.InstancedMesh(geometry, undefined, 3);
     for (let i = 0; i < 3; ++i) {
@@ -273,19 +284,19 @@ async function covered(kind) {
   scene.add(mesh);
   const seen = (material) => {
     mesh.material = material;
-    return colours(scene, camera(), 32).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+    return colours(scene, camera(), 32).filter((_, i) => i % 4 < 3).map((x) => (x > 0.5 ? 1 : 0));
   };
-  const glowing = { emissiveFactor: [1, 1, 1], pbrMetallicRoughness: { baseColorFactor: [0, 0, 0, 1] }, doubleSided: true };
-  return [seen(lacquered.materialFrom(lacquer, glowing, mesh)), seen(new THREE.MeshBasicMaterial({ side: THREE.DoubleSide }))];
+  const unlit = { extensions: { KHR_materials_unlit: {} }, doubleSided: true };
+  return [seen(lacquered.materialFrom(lacquer, unlit, mesh)), seen(new THREE.MeshBasicMaterial({ side: THREE.DoubleSide }))];
 }
 
-test('skins, morph targets and instances move it as they move three.js\'s own materials', async () => {
-  for (const kind of ['plain', 'skin', 'morph', 'instances']) {
+test('skins, morph targets, instances and batches move it as they move three.js\'s own materials', async () => {
+  for (const kind of ['plain', 'skin', 'morph', 'instances', 'batch', 'batch of colours']) {
     const [own, theirs] = await inPage(covered, kind);
     const sum = theirs.reduce((all, x) => all + x, 0);
-    assert.ok(sum > 50 && (kind === 'plain' || sum < 1000), `${kind}: ${sum}`);
+    assert.ok(sum > 100 && (kind === 'plain' || sum < 3000), `${kind}: ${sum}`);
     const off = own.filter((x, i) => x !== theirs[i]).length;
-    assert.ok(off <= 2, `${kind}: ${off} of ${sum} pixels`);
+    assert.ok(off <= 6, `${kind}: ${off} of ${sum} values`);
   }
 });
 
@@ -507,6 +518,35 @@ test("clipping planes cut it as they cut three.js's own materials", async () => 
     assert.ok(sum > 100 && sum < 1000, `${i}: ${sum}`);
     assert.ok(own.filter((x, at) => x !== theirs[at]).length <= 2, `${i}: not as the ${sum} pixels that three.js draws`);
   });
+});
+
+test('a logarithmic depth buffer holds its depths and three.js\'s', async () => {
+  const at = await inPage(() => {
+    const own = new THREE.WebGLRenderer({ logarithmicDepthBuffer: true });
+    const target = new THREE.WebGLRenderTarget(32, 32, { type: THREE.FloatType });
+    const far = new THREE.PerspectiveCamera(28, 1, 0.01, 1e7);
+    far.position.z = 3;
+    const [mesh, other] = [quad(), quad()];
+    other.rotation.y = 0.3;
+    other.position.z = 0.1;
+    other.material = new THREE.MeshBasicMaterial({ color: 0 });
+    const scene = new THREE.Scene();
+    scene.add(mesh, other);
+    const both = [lacquered.materialFrom(lacquer, { extensions: { KHR_materials_unlit: {} } }, mesh), new THREE.MeshBasicMaterial()].map((material) => {
+      mesh.material = material;
+      own.setRenderTarget(target);
+      own.render(scene, far);
+      const rgba = new Float32Array(32 * 32 * 4);
+      own.readRenderTargetPixels(target, 0, 0, 32, 32, rgba);
+      return Array.from(rgba).filter((_, i) => i % 4 === 0).map((x) => (x > 0.5 ? 1 : 0));
+    });
+    target.dispose();
+    own.dispose();
+    return both;
+  });
+  const sum = at[1].reduce((all, x) => all + x, 0);
+  assert.ok(sum > 100 && sum < 900, `${sum}`);
+  assert.ok(at[0].filter((x, i) => x !== at[1][i]).length <= 2, `${at[0].reduce((all, x) => all + x, 0)}, not the ${sum} pixels that three.js draws`);
 });
 
 test('two renderers draw one scene, each as it is now', async () => {

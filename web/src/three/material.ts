@@ -1,7 +1,7 @@
 // A material of three.js whose shader is Lacquer's.
 import {
   ClampToEdgeWrapping, DataArrayTexture, DataTexture, DoubleSide, FloatType, GLSL3, LinearFilter, Material, Matrix4, MirroredRepeatWrapping,
-  NearestFilter, Quaternion, RepeatWrapping, RGBAFormat, ShaderMaterial, SRGBColorSpace, UniformsLib, UniformsUtils, Vector2, type BufferAttribute,
+  NearestFilter, Quaternion, RepeatWrapping, RGBAFormat, ShaderMaterial, SRGBColorSpace, UniformsLib, UniformsUtils, Vector2, type BatchedMesh, type BufferAttribute,
   type BufferGeometry, type Camera, type InstancedMesh, type Mesh, type Object3D, type Scene, type SkinnedMesh, type Texture, type WebGLRenderer, type Wrapping,
 } from 'three';
 import type { Graph, Lacquer } from '../index.js';
@@ -22,7 +22,9 @@ export function attributesOf(mesh: Mesh): Attribute[] {
     ['uv2', 'TEXCOORD_2'], ['uv3', 'TEXCOORD_3'],
   ];
   const has = named.filter(([name]) => attributes[name]).map(([, attribute]) => attribute);
-  if ((mesh as InstancedMesh).instanceColor && !attributes.color) has.push('COLOR_0');
+  // three.js's own shaders ask a batch in this way, too.
+  const batched = (mesh as BatchedMesh).isBatchedMesh && (mesh as unknown as { _colorsTexture: object | null })._colorsTexture;
+  if (((mesh as InstancedMesh).instanceColor || batched) && !attributes.color) has.push('COLOR_0');
   if ((mesh as SkinnedMesh).isSkinnedMesh) has.push('JOINTS_0', ...(attributes.joints_1 ? ['JOINTS_1' as const] : []));
   if (Object.keys(morphAttributes).length > 0) has.push('MORPH_TARGETS');
   return has;

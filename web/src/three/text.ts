@@ -30,8 +30,14 @@ const kInstances = [
   '#ifdef USE_INSTANCING',
   'object.model = object.model * instanceMatrix;',
   'object.normal_matrix = object.normal_matrix * mat4(transpose(inverse(mat3(instanceMatrix))));',
+  '#endif', '#ifdef USE_BATCHING',
+  'mat4 lacquer_batched = getBatchingMatrix(getIndirectIndex(gl_DrawID));',
+  'object.model = object.model * lacquer_batched;',
+  'object.normal_matrix = object.normal_matrix * mat4(transpose(inverse(mat3(lacquer_batched))));',
   '#endif',
 ];
+/** three.js has it in a piece with names that the library's text has too. */
+const kPerspective = ['#ifdef USE_LOGARITHMIC_DEPTH_BUFFER', 'bool isPerspectiveMatrix(mat4 m) { return m[2][3] == -1.0; }', '#endif'];
 
 /** Declares what three.js does not, in the place of a block or an attribute, and says with what the variable that stands for it
  * is filled. */
@@ -59,6 +65,7 @@ class Rewriting {
     const without = '#if defined(USE_COLOR) && !defined(USE_COLOR_ALPHA)';
     this.fill.push(without, `${variable} = vec4(color, 1.0);`, '#else', `${variable} = color;`, '#endif');
     this.fill.push('#ifdef USE_INSTANCING_COLOR', `${variable}.rgb *= instanceColor;`, '#endif');
+    this.fill.push('#ifdef USE_BATCHING_COLOR', `${variable} *= getBatchingColor(getIndirectIndex(gl_DrawID));`, '#endif');
     return `#if !defined(USE_COLOR) && !defined(USE_COLOR_ALPHA)\nin ${type} color;\n#endif\n${type} ${variable};`;
   }
 
@@ -93,8 +100,8 @@ function world(text: string): { text: string; fill: string[] } {
   return { text: told, fill: told === text ? ['    lacquer_world = inverse(projectionMatrix * viewMatrix) * gl_Position;'] : [] };
 }
 
-/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, shadows, clipping, fog, tone mapping and colour spaces are
- * added. */
+/** A stage's ESSL for a ShaderMaterial with glslVersion GLSL3. Instances, batches, shadows, clipping, logarithmic depth, fog, tone
+ * mapping and colour spaces are added. */
 export function threeText(essl: string, stage: 'vertex' | 'fragment', shader: Interface): string {
   const vertex = stage === 'vertex';
   const to = new Rewriting(vertex, shader);
@@ -106,16 +113,16 @@ export function threeText(essl: string, stage: 'vertex' | 'fragment', shader: In
   if (vertex) {
     const placed = world(text);
     return [
-      ...['fog', 'clipping_planes'].map((chunk) => `#include <${chunk}_pars_vertex>`), 'vec4 lacquer_world;', ...shadows.before, placed.text,
+      ...['fog', 'clipping_planes', 'batching', 'logdepthbuf'].map((chunk) => `#include <${chunk}_pars_vertex>`), ...kPerspective, 'vec4 lacquer_world;', ...shadows.before, placed.text,
       ...main, '    surface();', ...placed.fill, '    vec4 mvPosition = viewMatrix * lacquer_world;', ...shadows.fill,
-      '#include <clipping_planes_vertex>', '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '}', '',
+      '#include <clipping_planes_vertex>', '#ifdef USE_FOG', '    vFogDepth = gl_Position.w;', '#endif', '#include <logdepthbuf_vertex>', '}', '',
     ].join('\n');
   }
   const ends = ['tonemapping', 'colorspace', 'fog', 'premultiplied_alpha'].map((chunk) => `#include <${chunk}_fragment>`);
   const [color] = shader.outputs as { name: string }[];
   return [
-    ...['fog', 'clipping_planes'].map((chunk) => `#include <${chunk}_pars_fragment>`), ...shadows.before, lights === 0 ? text : shadowed(text),
-    `#define gl_FragColor out_${color.name}`, ...main, '    vec4 diffuseColor = vec4(1.0);', '#include <clipping_planes_fragment>', ...shadows.fill,
+    ...['fog', 'clipping_planes', 'logdepthbuf'].map((chunk) => `#include <${chunk}_pars_fragment>`), ...shadows.before, lights === 0 ? text : shadowed(text),
+    `#define gl_FragColor out_${color.name}`, ...main, '    vec4 diffuseColor = vec4(1.0);', '#include <clipping_planes_fragment>', '#include <logdepthbuf_fragment>', ...shadows.fill,
     '    surface();', '    gl_FragColor.a *= diffuseColor.a; // what a plane covers of the pixel', ...ends, '}', '',
   ].join('\n');
 }
