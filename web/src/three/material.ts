@@ -85,7 +85,7 @@ export interface MaterialOptions {
 }
 
 /** Draws a graph. It has the lights, the fog, the tone mapping and the colour space of the renderer and its scene, skins, morph
- * targets, instances and clipping planes; the surroundings are those of setEnvironment(). Shadows fall from it and on it. */
+ * targets, instances, batches and clipping planes; the surroundings are those of setEnvironment(). Shadows fall from it and on it. */
 export class LacquerMaterial extends ShaderMaterial {
   readonly isLacquerMaterial = true;
   /** Instead of the scene's. */
