@@ -170,8 +170,14 @@ test('surroundings light a scene, and turn and dim as Babylon.js has it', async 
       const side = rightHanded ? 1 : -1; // +x of the file
       const bright = await turned((side * Math.PI) / 2);
       const away = await turned((-side * Math.PI) / 2);
+      mesh.parent.rotation.y = rightHanded ? 0 : Math.PI;
+      camera.position = placed(scene, 0, 0, 3);
+      camera.setTarget(BABYLON.Vector3.Zero());
+      const maps = lacquer.environment(picture, 'environment.hdr', { size: 32, samples: 64 });
+      lacquered.setEnvironment(scene, lacquered.environmentOf(lacquer, scene, maps));
+      const filtered = await middle();
       lacquered.setEnvironment(scene, null);
-      results[rightHanded] = { dark, half, dimmed, bright, away, none: await middle() };
+      results[rightHanded] = { dark, half, dimmed, bright, away, filtered, none: await middle() };
       environment.dispose();
       scene.dispose();
     }
@@ -181,6 +187,7 @@ test('surroundings light a scene, and turn and dim as Babylon.js has it', async 
     assert.deepEqual(of.dark, [0, 0, 0]);
     assert.deepEqual(of.none, [0, 0, 0]);
     assert.ok(of.half[0] > 0.8 && of.half[0] < 1.2, `${of.half}`);
+    assert.deepEqual(of.filtered, of.half);
     of.dimmed.forEach((x, i) => assert.ok(Math.abs(x - of.half[i] / 2) < 1e-3));
     assert.ok(of.bright[0] > 1.6, `${of.bright}`);
     assert.ok(of.away[0] < 0.3, `${of.away}`);

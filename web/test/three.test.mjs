@@ -63,6 +63,12 @@ window.lamp = () => {
 document.title = 'ready';
 `;
 
+/** Filters surroundings beside the page. */
+const kWorker = `
+import { load } from './node_modules/@lacquer-shaders/lacquer/index.js';
+onmessage = async ({ data }) => postMessage((await load()).environment(data, 'environment.hdr', { size: 32, samples: 64 }));
+`;
+
 let browser;
 let server;
 let folder;
@@ -76,6 +82,7 @@ before(async () => {
   symlinkSync(join(output, 'package'), join(folder, 'node_modules/@lacquer-shaders/lacquer'));
   writeFileSync(join(folder, 'index.html'), kPage);
   writeFileSync(join(folder, 'harness.js'), kHarness);
+  writeFileSync(join(folder, 'worker.js'), kWorker);
   cpSync(join(root, 'web/examples/three'), join(folder, 'three'), { recursive: true });
   symlinkSync('../node_modules', join(folder, 'three/node_modules'));
   const [real] = realFiles();
@@ -199,6 +206,39 @@ test('surroundings light a scene, turned and dimmed as three.js has it', async (
   at.dimmed.forEach((x, i) => assert.ok(Math.abs(x - at.half[i] / 2) < 1e-3));
   assert.ok(at.bright[0] > 1.6, `${at.bright}`);
   assert.ok(at.away[0] < 0.3, `${at.away}`);
+});
+
+test('surroundings that a worker filtered are those of the page', async () => {
+  const at = await inPage(async () => {
+    const [width, height] = [32, 16];
+    const head = new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
+    const picture = new Uint8Array(head.length + 4 * width * height);
+    picture.set(head);
+    for (let i = 0; i < width * height; ++i) picture.set([128 + (i % 100), 64, i % 64, 128], head.length + 4 * i);
+    const worker = new Worker('worker.js', { type: 'module' });
+    const maps = await new Promise((done, failed) => {
+      worker.onmessage = ({ data }) => done(data);
+      worker.onerror = failed;
+      worker.postMessage(picture);
+    });
+    worker.terminate();
+    const texelsOf = ({ textures, levels }) => [levels, ...Object.entries(textures).map(([slot, cube]) =>
+      [slot, [cube.image, ...cube.mipmaps.map(({ image }) => image)].map((faces) => faces.map((face) => Array.from(face.image.data))).flat(2)])];
+    const wrong = [];
+    for (const maps of [{ files: {}, environment_max_lod: 0 }, lacquer.environment(picture, 'a.hdr', { size: 32, samples: 64, dds: true })]) {
+      try {
+        lacquered.environmentOf(lacquer, maps);
+      } catch (error) {
+        wrong.push(error.message);
+      }
+    }
+    const page = texelsOf(lacquered.environmentOf(lacquer, picture, { size: 32, samples: 64 }));
+    return { wrong, page, worker: texelsOf(lacquered.environmentOf(lacquer, maps)) };
+  });
+  assert.match(at.wrong[0], /has the map environment_specular/);
+  assert.match(at.wrong[1], /environment_specular is no KTX2 file of half floats/);
+  assert.ok(at.page[1][1].length > 6 * 4 * 32 * 32, `${at.page[1][1].length}`);
+  assert.deepEqual(at.worker, at.page);
 });
 
 test('numbers change without a program, and what was made is given back', async () => {

@@ -11,7 +11,7 @@ import { ToHalfFloat } from '@babylonjs/core/Misc/textureTools.js';
 import type { SphericalPolynomial } from '@babylonjs/core/Maths/sphericalPolynomial.js';
 import type { Scene } from '@babylonjs/core/scene.js';
 import type { Lacquer } from '../index.js';
-import { filtered, kForm, kTable, tablesFor, type Cube } from '../renderers/environment.js';
+import { cubesOf, isMaps, kForm, kTable, tablesFor, type Cube, type EnvironmentMaps } from '../renderers/environment.js';
 import type { EnvironmentForm } from '../types.js';
 
 /** What surrounds a scene, for setEnvironment() or a material. */
@@ -71,11 +71,17 @@ export function tablesOf(lacquer: Lacquer, scene: Scene): Record<string, BaseTex
 }
 
 /** From a picture of the surroundings, Radiance HDR: filtered on the processor, for seconds, in which the page waits. `form.size` and
- * `form.samples` trade time for detail. */
-export function environmentOf(lacquer: Lacquer, scene: Scene, picture: Uint8Array | ArrayBuffer, form: EnvironmentForm = kForm): Environment {
-  const bytes = picture instanceof ArrayBuffer ? new Uint8Array(picture) : picture;
-  if (!(bytes instanceof Uint8Array)) throw new TypeError('an environment is the bytes of a Radiance picture');
-  const { cubes, levels } = filtered(lacquer, bytes, form);
+ * `form.samples` trade time for detail. Or, at once, from the maps that lacquer.environment() made of one in a worker. */
+export function environmentOf(
+  lacquer: Lacquer,
+  scene: Scene,
+  picture: Uint8Array | ArrayBuffer | EnvironmentMaps,
+  form: EnvironmentForm = kForm,
+): Environment {
+  const from = picture instanceof ArrayBuffer ? new Uint8Array(picture) : picture;
+  if (!(from instanceof Uint8Array || isMaps(from)))
+    throw new TypeError('an environment is the bytes of a Radiance picture, or the maps of environment()');
+  const { cubes, levels } = cubesOf(lacquer, from, form);
   const textures: Record<string, BaseTexture> = Object.fromEntries(Object.entries(cubes).map(([slot, cube]) => [slot, cubeOf(scene, cube)]));
   return { textures, levels, dispose: () => Object.values(textures).forEach((texture) => texture.dispose()) };
 }
@@ -100,7 +106,7 @@ const environments = new WeakMap<Scene, Environment>();
 /** Lights all materials of a scene that have no environment of their own, in the place of the scene's `environmentTexture`; null
  * gives that its place back. The scene's `environmentIntensity` holds for it. */
 export function setEnvironment(scene: Scene, environment: Environment | null): void {
-  if (environment && !environment.textures) throw new TypeError('this is no environment: environmentOf() makes one of a picture');
+  if (environment && environment.levels === undefined) throw new TypeError('this is no environment: environmentOf() makes one of a picture');
   if (environment) environments.set(scene, environment);
   else environments.delete(scene);
 }

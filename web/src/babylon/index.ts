@@ -2,3 +2,4 @@
 export { LacquerMaterial, materialFrom, attributesOf, type GraphSource, type MaterialOptions } from './material.js';
 export { LacquerExtension, type PluginOptions } from './loader.js';
 export { environmentOf, setEnvironment, type Environment } from './environment.js';
+export type { EnvironmentMaps } from '../renderers/environment.js';

@@ -1,6 +1,6 @@
 // The maps of `lacquer environment` in memory, before they are a renderer's textures.
 import type { Lacquer } from '../index.js';
-import type { EnvironmentForm } from '../types.js';
+import type { EnvironmentFiles, EnvironmentForm } from '../types.js';
 
 /** A cube of half floats, four a texel: of each level, from the largest on, its faces +x, -x, +y, -y, +z, -z. */
 export interface Cube {
@@ -8,11 +8,18 @@ export interface Cube {
   levels: Uint16Array[][];
 }
 
+/** What lacquer.environment() gives, as KTX2 and half floats: made in a worker, or by `lacquer environment`. */
+export type EnvironmentMaps = Pick<EnvironmentFiles, 'environment_max_lod' | 'files'>;
+
 const kHalfTexel = 8;
+const kHalfFormat = 97; // VK_FORMAT_R16G16B16A16_SFLOAT
+const kCubes = ['environment_specular', 'environment_irradiance', 'environment_charlie'];
 
 /** Of a KTX2 file as the library writes it. */
-function cubeOf(file: Uint8Array): Cube {
+function cubeOf(slot: string, file: Uint8Array): Cube {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
+  if (!(file.length > 80 && view.getUint8(0) === 0xab && view.getUint32(12, true) === kHalfFormat))
+    throw new TypeError(`${slot} is no KTX2 file of half floats: environment() makes such without \`dds\` and \`shared_exponents\``);
   const edge = view.getUint32(20, true);
   const levels = Array.from({ length: view.getUint32(40, true) }, (_, level) => {
     const bytes = (edge >> level) ** 2 * kHalfTexel;
@@ -22,12 +29,14 @@ function cubeOf(file: Uint8Array): Cube {
   return { edge, levels };
 }
 
-/** The maps of a Radiance picture by their slots, and environment_max_lod. */
-export function filtered(lacquer: Lacquer, picture: Uint8Array, form: EnvironmentForm): { cubes: Record<string, Cube>; levels: number } {
-  const { files, environment_max_lod } = lacquer.environment(picture, 'environment.hdr', { ...form, dds: false, shared_exponents: false });
-  const slots = ['environment_specular', 'environment_irradiance', 'environment_charlie'].filter((slot) => files[slot]);
-  return { cubes: Object.fromEntries(slots.map((slot) => [slot, cubeOf(files[slot])])), levels: environment_max_lod };
+/** The maps by their slots, and environment_max_lod, of a Radiance picture or of what was made of one before. */
+export function cubesOf(lacquer: Lacquer, from: Uint8Array | EnvironmentMaps, form: EnvironmentForm): { cubes: Record<string, Cube>; levels: number } {
+  const maps = from instanceof Uint8Array ? lacquer.environment(from, 'environment.hdr', { ...form, dds: false, shared_exponents: false }) : from;
+  const slots = kCubes.filter((slot) => maps.files[slot]);
+  if (!slots.includes(kCubes[0])) throw new TypeError(`an environment has the map ${kCubes[0]}`);
+  return { cubes: Object.fromEntries(slots.map((slot) => [slot, cubeOf(slot, maps.files[slot])])), levels: maps.environment_max_lod };
 }
+export const isMaps = (from: unknown): from is EnvironmentMaps => typeof (from as EnvironmentMaps)?.files === 'object';
 
 /** Equirectangular floats, four a texel from the upper left on, as a picture in Radiance HDR. `at`: one of them. */
 export function radianceOf(width: number, height: number, at: (i: number) => number): Uint8Array {

@@ -4,7 +4,7 @@ import {
   type Texture,
 } from 'three';
 import type { Lacquer } from '../index.js';
-import { filtered, kForm, kTable, radianceOf, tablesFor, type Cube } from '../renderers/environment.js';
+import { cubesOf, isMaps, kForm, kTable, radianceOf, tablesFor, type Cube, type EnvironmentMaps } from '../renderers/environment.js';
 import type { EnvironmentForm } from '../types.js';
 
 /** What surrounds a scene, for setEnvironment() or a material. */
@@ -49,15 +49,15 @@ export function tablesOf(lacquer: Lacquer): Record<string, Texture> {
 }
 
 /** From a picture of the surroundings, Radiance HDR, or a texture that HDRLoader made of one: filtered on the processor, for
- * seconds, in which the page waits. `form.size` and `form.samples` trade time for detail. */
+ * seconds, in which the page waits. `form.size` and `form.samples` trade time for detail. Or, at once, from the maps that
+ * lacquer.environment() made of one in a worker. */
 export function environmentOf(
   lacquer: Lacquer,
-  picture: Uint8Array | ArrayBuffer | Texture,
+  picture: Uint8Array | ArrayBuffer | Texture | EnvironmentMaps,
   form: EnvironmentForm = kForm,
 ): Environment {
   const file = picture instanceof ArrayBuffer ? new Uint8Array(picture) : picture;
-  const bytes = file instanceof Uint8Array ? file : radiance(file);
-  const { cubes, levels } = filtered(lacquer, bytes, form);
+  const { cubes, levels } = cubesOf(lacquer, file instanceof Uint8Array || isMaps(file) ? file : radiance(file), form);
   const textures: Record<string, Texture> = Object.fromEntries(Object.entries(cubes).map(([slot, cube]) => [slot, cubeOf(cube)]));
   return {
     textures,
@@ -71,7 +71,7 @@ function radiance(texture: Texture): Uint8Array {
   const { data, width, height } = (texture?.image ?? {}) as { data?: ArrayLike<number>; width: number; height: number };
   const half = texture?.type === HalfFloatType;
   if (!data || data.length !== 4 * width * height || (!half && texture.type !== FloatType))
-    throw new TypeError('an environment is the bytes of a Radiance picture, or an equirectangular texture of RGBA floats as HDRLoader makes it');
+    throw new TypeError('an environment is the bytes of a Radiance picture, an equirectangular texture of RGBA floats as HDRLoader makes it, or the maps of environment()');
   return radianceOf(width, height, (i) => (half ? DataUtils.fromHalfFloat(data[i]) : data[i]));
 }
 
@@ -98,7 +98,7 @@ const environments = new WeakMap<Scene, Environment>();
 /** Lights all materials of a scene that have no environment of their own. The scene's `environmentIntensity` and
  * `environmentRotation` hold for it; with null it has none any more. */
 export function setEnvironment(scene: Scene, environment: Environment | null): void {
-  if (environment && !environment.textures) throw new TypeError('this is no environment: environmentOf() makes one of a picture');
+  if (environment && environment.levels === undefined) throw new TypeError('this is no environment: environmentOf() makes one of a picture');
   if (environment) environments.set(scene, environment);
   else environments.delete(scene);
 }

@@ -2,3 +2,4 @@
 export { LacquerMaterial, materialFrom, attributesOf, type MaterialOptions } from './material.js';
 export { LacquerPlugin, type PluginOptions } from './loader.js';
 export { environmentOf, setEnvironment, type Environment } from './environment.js';
+export type { EnvironmentMaps } from '../renderers/environment.js';
