@@ -16,6 +16,8 @@ constexpr uint32_t kSmallestLevel = 8;   ///< of the specular cube
 constexpr uint32_t kCharliePart = 4;     ///< its size is this part of the specular cube's
 constexpr uint32_t kFinestTree = 512;    ///< where the cube is not larger itself
 constexpr double kCosineFineness = 0.1;  ///< of the irradiance: an error of 1e-4
+constexpr double kDraftCosineFineness = 0.3;
+constexpr uint32_t kDraftSize = 64, kDraftSamples = 64;
 
 /// Texels of a square that are filtered together, along a side.
 constexpr uint32_t kSide = 4;
@@ -77,7 +79,8 @@ public:
       add(maps.charlie[i], options.size / kCharliePart >> i,
           &filters_.emplace_back(tree, Lobe::charlie(roughness), fineness));
     }
-    add(maps.irradiance, kIrradianceSize, &filters_.emplace_back(tree, Lobe::cosine(), kCosineFineness));
+    add(maps.irradiance, kIrradianceSize,
+        &filters_.emplace_back(tree, Lobe::cosine(), options.draft ? kDraftCosineFineness : kCosineFineness));
   }
 
   void run(const MapProgress& progress) {
@@ -168,12 +171,18 @@ std::array<double, 9> harmonicsAt(const Vec3& direction) {
           0.54627421529603959 * (x * x - y * y)};
 }
 
+MapOptions draftOf(const MapOptions& options) {
+  return {std::min(options.size, kDraftSize), std::min(options.samples, kDraftSamples), true};
+}
+
 uint32_t treeSizeOf(const Panorama& panorama, const MapOptions& options) {
+  if (options.draft) return options.size;
   const uint32_t finest = std::min(kFinestTree, std::bit_ceil(std::max(panorama.width / 4, 1U)));
   return std::max(finest, options.size);
 }
 
 uint32_t treeSizeOf(const texture::CubeLevel& cube, const MapOptions& options) {
+  if (options.draft) return options.size;
   return std::max(std::min(kFinestTree, std::bit_ceil(cube.size)), options.size);
 }
 
