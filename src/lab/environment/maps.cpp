@@ -33,7 +33,8 @@ struct Rows {
 
 /// The mean of the tree's cells that a texel of a mirror's level covers.
 Rgb mirrored(const LightTree& tree, size_t texel, uint32_t size) {
-  const Cell& cell = tree.level(static_cast<uint32_t>(std::countr_zero(size)))[texel];
+  const auto level = static_cast<uint32_t>(std::countr_zero(size));
+  const Cell& cell = tree.level(level)[placeOf(texel, level)];
   Rgb mean{};
   for (size_t i = 0; i < 3; ++i) mean[i] = cell.flux[i] / cell.angle;
   return mean;
@@ -108,7 +109,10 @@ private:
     // The convolution with the cosine over pi, by order.
     constexpr double kCosine[] = {1.0, 2.0 / 3.0, 0.25};
     constexpr size_t kOrder[] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
-    for (const Cell& cell : tree_.level(tree_.levels() - 1)) {
+    const uint32_t finest = tree_.levels() - 1;
+    const std::vector<Cell>& cells = tree_.level(finest);
+    for (size_t texel = 0; texel < cells.size(); ++texel) {
+      const Cell& cell = cells[placeOf(texel, finest)];
       const std::array<double, 9> basis = harmonicsAt({cell.light[0], cell.light[1], cell.light[2]});
       for (size_t k = 0; k < 9; ++k) {
         for (size_t i = 0; i < 3; ++i) maps_.harmonics[k][i] += basis[k] * kCosine[kOrder[k]] * cell.flux[i];
