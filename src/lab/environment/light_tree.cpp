@@ -308,8 +308,7 @@ void weigh(const Cell& cell, const Lanes<M>& weight, const Lanes<M>& factor, siz
 }
 
 template <class Shape, size_t N>
-void add(const Cell& cell, const Shape& shape, Together<N>& all) {
-  Lanes<N> weight = apart(all, cell.middle);
+void add(const Cell& cell, Lanes<N> weight, const Shape& shape, Together<N>& all) {
   shape(weight);
   Lanes<N> factor = apart(all, cell.light);
   shape(factor);
@@ -319,9 +318,9 @@ void add(const Cell& cell, const Shape& shape, Together<N>& all) {
 /// A narrow ring has few of the lanes at once: four that it has none of are left out, which changes no
 /// number.
 template <size_t N>
-void add(const Cell& cell, const Charlie& shape, Together<N>& all) {
+void add(const Cell& cell, const Lanes<N>& weight, const Charlie& shape, Together<N>& all) {
   constexpr size_t kFour = 4;
-  const Lanes<N> weight = apart(all, cell.middle), factor = apart(all, cell.light);
+  const Lanes<N> factor = apart(all, cell.light);
   for (size_t first = 0; first < N; first += kFour) {
     Lanes<kFour> weights, factors;
     std::copy_n(&weight[first], kFour, weights.begin());
@@ -348,12 +347,13 @@ void addAll(const LightTree& tree, const Lobe& lobe, const Shape& shape, double 
     const auto [level, index] = open[--count];
     const Cell& cell = tree.level(level)[index];
     const double size = 2.0 / (uint32_t{1} << level);  // at least its width, and half its diagonal
-    const auto [least, most] = boundsOf(apart(all, cell.middle));
+    const Lanes<N> to_middle = apart(all, cell.middle);
+    const auto [least, most] = boundsOf(to_middle);
     const double high = 1 - double{least}, low = 1 - double{most};
     if (high < -size || low > end + size) continue;
     const bool leaf = level + 1 == tree.levels();
     if (leaf || size * size <= fineness * fineness * lobe.scale2(low, high)) {
-      add(cell, shape, all);
+      add(cell, to_middle, shape, all);
       continue;
     }
     for (uint32_t child = 0; child < 4; ++child) open[count++] = {level + 1, 4 * index + child};
