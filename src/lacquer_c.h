@@ -726,7 +726,7 @@ LACQUER_C int lacquer_environment_sheen(uint32_t size, float* pairs, size_t capa
                                         lacquer_messages* messages);
 /* The files of `lacquer environment` (docs/environments.md) from a picture's bytes, Radiance HDR or OpenEXR,
  * which are called `name` in messages. `how` is a JSON object: "size", the texels of a face's edge,
- * "samples", "dds", "shared_exponents" and "scene", as the members of lacquer::Environment. */
+ * "samples", "dds", "shared_exponents", "scene" and "draft", as the members of lacquer::Environment. */
 typedef struct lacquer_environment lacquer_environment;
 LACQUER_C lacquer_environment* lacquer_environment_filter(const char* picture, size_t size, const char* name,
                                                           const char* how, const lacquer_options* options,

@@ -684,7 +684,7 @@ def environment_sheen(size: int = 128) -> NDArray[np.float32]:
 def filter_environment(picture: Union[bytes, str, Path], size: int = 256, samples: int = 1024, dds: bool = False,
                        shared_exponents: bool = False, name: str = "environment.hdr",
                        options: Optional[Options] = None, messages: Optional[List[Message]] = None,
-                       scene: Optional[int] = None) -> Dict[str, Any]:
+                       scene: Optional[int] = None, draft: bool = False) -> Dict[str, Any]:
     """The files of `lacquer environment` in memory, from a picture of the surroundings, a file or its bytes (Radiance HDR,
     OpenEXR, a cube map in KTX2, or glTF for the environment of a scene, all in one file), which are called `name` in messages:
     what environment.json says, and as "files" the bytes by texture."""
@@ -692,7 +692,8 @@ def filter_environment(picture: Union[bytes, str, Path], size: int = 256, sample
         name = os.fspath(picture)
         picture = Path(picture).read_bytes()
     data = picture
-    form = {"size": _texels(size), "samples": _texels(samples), "dds": dds, "shared_exponents": shared_exponents}
+    form = {"size": _texels(size), "samples": _texels(samples), "dds": dds, "shared_exponents": shared_exponents,
+            "draft": draft}
     if scene is not None:
         form["scene"] = scene
     how_text = _text(json.dumps(form))

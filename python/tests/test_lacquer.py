@@ -399,6 +399,8 @@ def test_environments_are_filtered(tmp_path):
     assert all(file.startswith(b"\xabKTX 20") for file in made["files"].values())
     (tmp_path / "sky.hdr").write_bytes(picture)
     assert lacquer.filter_environment(tmp_path / "sky.hdr", size=32, samples=64) == made
+    draft = lacquer.filter_environment(picture, draft=True)
+    assert [draft["textures"][slot]["size"] for slot in ("environment_specular", "environment_dfg")] == [64, 32]
     with pytest.raises(lacquer.Error) as error:
         lacquer.filter_environment(picture[:-1], name="cut.hdr")
     assert error.value.messages[0].file == "cut.hdr"

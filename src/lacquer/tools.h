@@ -208,6 +208,7 @@ struct Environment {
   bool dds = false;         ///< files are .dds; else .ktx2
   bool shared_exponents = false;  ///< texels of cubes are RGB9E5; else half floats
   int scene = -1;                 ///< of a glTF file; -1 for the one that it names
+  bool draft = false;             ///< for a first look: `size` and `samples` at most 64, tables of 32 x 32
 };
 /// Reads a picture of the surroundings and writes the cube maps and tables that templates read
 /// (environment_specular, environment_charlie, environment_irradiance, environment_dfg, environment_sheen)

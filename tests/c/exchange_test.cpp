@@ -203,6 +203,15 @@ TEST(CEnvironments, AreFilteredInMemory) {
   }
   EXPECT_EQ(lacquer_environment_file(made.get(), "environment_none", &size), nullptr);
   EXPECT_EQ(size, 0U);
+  const CEnvironment draft(lacquer_environment_filter(picture.data(), picture.size(), "sky.hdr",
+                                                      R"({"draft": true})", nullptr, said));
+  ASSERT_TRUE(draft) << said.takeCodes();
+  Environment form;
+  form.draft = true;
+  const auto drafted = filterEnvironment(form, picture, "sky.hdr", {}, messages);
+  ASSERT_TRUE(drafted);
+  text = lacquer_environment_description(draft.get(), &size);
+  EXPECT_EQ(std::string(text, size), drafted->description);
 }
 
 TEST(CEnvironments, WrongOnesAreSaid) {

@@ -156,6 +156,30 @@ TEST_F(Files, OfBothContainersAndTexelsHoldTheMaps) {
   }
 }
 
+TEST_F(Files, OfADraftAreSmall) {
+  Environment draft;
+  draft.output = out();
+  draft.draft = true;
+  Messages messages;
+  const auto sizesOf = [&] {
+    std::vector<uint32_t> sizes;
+    const auto made = writeEnvironment(draft, picture(), {}, messages);
+    EXPECT_TRUE(made);
+    if (!made) return sizes;
+    for (const EnvironmentTexture& texture : made->textures) sizes.push_back(texture.size);
+    return sizes;
+  };
+  EXPECT_EQ(sizesOf(), (std::vector<uint32_t>{64, 16, 32, 32, 32}));
+  const std::string capped = readFile(out() + "/environment_specular.ktx2");
+  draft.samples = 64;
+  draft.size = 64;
+  sizesOf();
+  EXPECT_EQ(readFile(out() + "/environment_specular.ktx2"), capped);
+  draft.size = 32;
+  EXPECT_EQ(sizesOf(), (std::vector<uint32_t>{32, 8, 32, 32, 32}));
+  EXPECT_TRUE(messages.empty());
+}
+
 TEST_F(Files, AreTheSameWithAnyNumberOfThreads) {
   Messages messages;
   Options one;

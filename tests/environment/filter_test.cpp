@@ -72,6 +72,32 @@ TEST(Levels, AreWhatQuadratureGives) {
   }
 }
 
+/// A draft of what has 256 texels in a row: 64, and no part is finer than they. Its sun stays where it is.
+TEST(Levels, OfADraftAreNearQuadrature) {
+  const MapOptions draft = environment::draftOf({256, 1024});
+  EXPECT_EQ(draft.size, 64U);
+  EXPECT_EQ(environment::draftOf({32, 1024}).size, 32U);
+  for (const double sun : {2.0, 5000.0}) {
+    const Panorama panorama = outdoors(512, sun);
+    EXPECT_EQ(treeSizeOf(panorama, draft), 64U);
+    const Maps maps = environment::makeMaps(LightTree(panorama, treeSizeOf(panorama, draft)), draft);
+    ASSERT_EQ(maps.specular[0].size, 64U);
+    constexpr double kMost = 0.06;
+    for (size_t i = 1; i < maps.specular.size(); ++i) {
+      const double alpha = std::pow(static_cast<double>(i) / maps.lastLevel(), 2);
+      const Error ggx = errorOf(panorama, maps.specular[i], Shape::Ggx, alpha);
+      print("draft: environment_specular", i, ggx);
+      EXPECT_LT(ggx.most, kMost) << "sun " << sun;
+      const Error charlie = errorOf(panorama, maps.charlie[i], Shape::Charlie, alpha);
+      print("draft: environment_charlie", i, charlie);
+      EXPECT_LT(charlie.most, kMost) << "sun " << sun;
+    }
+    const Error cosine = errorOf(panorama, maps.irradiance, Shape::Cosine, 1);
+    print("draft: environment_irradiance", 0, cosine);
+    EXPECT_LT(cosine.most, 0.02);
+  }
+}
+
 /// More samples, less error.
 TEST(Levels, ComeCloserWithMoreSamples) {
   const Panorama panorama = outdoors(512, 5000);

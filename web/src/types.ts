@@ -415,6 +415,8 @@ export interface EnvironmentForm {
   shared_exponents?: boolean;
   /** Of a glTF file, from 0; absent: the one that it names. */
   scene?: number;
+  /** For a first look: `size` and `samples` at most 64, tables of 32 × 32. */
+  draft?: boolean;
 }
 
 /** What environment.json says, and the files' bytes by their textures: "environment_specular". */

@@ -339,11 +339,13 @@ test('an environment is filtered to the files of the native program', () => with
   const pixels = Array.from({ length: 8 }, (_, i) => [16 * i + 15, 64, 32, 129]).flat();
   const picture = Buffer.concat([Buffer.from('#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n'), Buffer.from(pixels)]);
   writeFileSync(join(folder, 'sky.hdr'), picture);
-  lacquer('environment', join(folder, 'sky.hdr'), '-o', join(folder, 'sky'), '--size', '32', '--samples', '64');
-  const { files, ...made } = library.environment(picture, 'sky.hdr', { size: 32, samples: 64 });
-  assert.deepEqual(made, JSON.parse(readFileSync(join(folder, 'sky/environment.json'), 'utf8')));
-  for (const [slot, { file }] of Object.entries(made.textures))
-    assert.ok(readFileSync(join(folder, 'sky', file)).equals(Buffer.from(files[slot])), slot);
+  for (const [flags, form] of [[['--size', '32', '--samples', '64'], { size: 32, samples: 64 }], [['--draft'], { draft: true }]]) {
+    lacquer('environment', join(folder, 'sky.hdr'), '-o', join(folder, 'sky'), ...flags);
+    const { files, ...made } = library.environment(picture, 'sky.hdr', form);
+    assert.deepEqual(made, JSON.parse(readFileSync(join(folder, 'sky/environment.json'), 'utf8')));
+    for (const [slot, { file }] of Object.entries(made.textures))
+      assert.ok(readFileSync(join(folder, 'sky', file)).equals(Buffer.from(files[slot])), slot);
+  }
   assert.throws(() => library.environment(picture.subarray(0, -1), 'cut.hdr'), /cut\.hdr/);
   assert.throws(() => library.environment(picture, 'sky.hdr', { size: 33 }), /out-of-range/);
 }));

@@ -27,6 +27,7 @@ static constexpr Row<Environment> kEnvironmentRows[] = {
     {"dds", kTruth, [](const Json& value, Environment& to) { return truth(value, to.dds); }},
     {"shared_exponents", kTruth,
      [](const Json& value, Environment& to) { return truth(value, to.shared_exponents); }},
+    {"draft", kTruth, [](const Json& value, Environment& to) { return truth(value, to.draft); }},
 };
 
 lacquer_environment* lacquer_environment_filter(const char* picture, size_t size, const char* name,

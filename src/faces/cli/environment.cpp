@@ -29,6 +29,9 @@ void addEnvironment(CLI::App& verb, EnvironmentFlags& flags, OptionFlags& option
       ->check(CLI::Range(64, 65536))
       ->check(kWhole)
       ->capture_default_str();
+  verb.add_flag(
+      "--draft", flags.environment.draft,
+      "for a first look: at most 64 texels and 64 samples, nothing finer than a texel, tables of 32 x 32");
   verb.add_option("--container", flags.container, "ktx2 or dds")
       ->check(CLI::IsMember({"ktx2", "dds"}))
       ->capture_default_str();

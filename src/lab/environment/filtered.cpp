@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kLeastFace = 32, kMostFace = 1024;
 constexpr uint32_t kLeastDraws = 64, kMostDraws = 65536;
-constexpr uint32_t kDfgSize = 128, kSheenSize = 64;
+constexpr uint32_t kDfgSize = 128, kSheenSize = 64, kDraftTableSize = 32;
 constexpr const char* kSlots[] = {"environment_specular", "environment_charlie", "environment_irradiance",
                                   "environment_dfg", "environment_sheen"};
 
@@ -50,8 +50,9 @@ Strings bytesOf(const Environment& of, const environment::Maps& maps,
     add("sampler2D", of.dds ? "R16G16_UNORM" : "R16G16_SFLOAT", size, 1,
         texture::tableFile(container, size, values));
   };
-  table(kDfgSize, eval::environmentDfgTable(kDfgSize));
-  table(kSheenSize, eval::environmentSheenTable(kSheenSize));
+  const uint32_t dfg = of.draft ? kDraftTableSize : kDfgSize, sheen = of.draft ? kDraftTableSize : kSheenSize;
+  table(dfg, eval::environmentDfgTable(dfg));
+  table(sheen, eval::environmentSheenTable(sheen));
   return files;
 }
 
@@ -78,7 +79,9 @@ Strings environmentFiles(const Environment& of) {
 
 EnvironmentFiles filesOf(const Environment& of, const environment::Surroundings& surroundings,
                          const Progress& progress) {
-  const environment::Maps maps = environment::mapsOf(surroundings, {of.size, of.samples}, progress);
+  environment::MapOptions how{of.size, of.samples};
+  if (of.draft) how = environment::draftOf(how);
+  const environment::Maps maps = environment::mapsOf(surroundings, how, progress);
   EnvironmentFiles made{{of.output, {}, maps.lastLevel(), maps.harmonics, surroundings.box}, {}, {}};
   made.files = bytesOf(of, maps, made.maps.textures);
   made.description = environmentJson(made.maps);

@@ -117,36 +117,40 @@ void splat(const texture::CubeLevel& cube, uint32_t row, uint32_t size, std::vec
   }
 }
 
-std::vector<Cell> coarser(const std::vector<Cell>& fine, uint32_t size) {
+std::vector<Cell> coarser(const std::vector<Cell>& fine) {
   std::vector<Cell> cells;
-  cells.reserve(size_t{kFaces} * size * size);
-  for (size_t row = 0; row < size_t{kFaces} * size; ++row) {
-    for (size_t x = 0; x < size; ++x) {
-      Sum sum;
-      for (const size_t i : {4 * row * size + 2 * x, (4 * row + 2) * size + 2 * x}) {
-        sum.add(fine[i]);
-        sum.add(fine[i + 1]);
-      }
-      cells.push_back(sum.cell());
-    }
+  cells.reserve(fine.size() / 4);
+  for (size_t first = 0; first < fine.size(); first += 4) {
+    Sum sum;
+    for (size_t i = 0; i < 4; ++i) sum.add(fine[first + i]);
+    cells.push_back(sum.cell());
   }
   return cells;
 }
 
-/// From one cell for each face to the finest.
+/// From one cell for each face to the finest, whose sums stand row by row.
 std::vector<std::vector<Cell>> levelsOf(const std::vector<Sum>& sums, uint32_t size) {
-  std::vector<std::vector<Cell>> levels(std::countr_zero(size) + 1U);
-  levels.back().reserve(sums.size());
-  for (const Sum& sum : sums) {
-    assert(sum.angle > 0);
-    levels.back().push_back(sum.cell());
+  const auto finest = static_cast<uint32_t>(std::countr_zero(size));
+  std::vector<std::vector<Cell>> levels(finest + 1U);
+  levels.back().resize(sums.size());
+  for (size_t i = 0; i < sums.size(); ++i) {
+    assert(sums[i].angle > 0);
+    levels.back()[placeOf(i, finest)] = sums[i].cell();
   }
-  for (size_t i = levels.size() - 1; i-- > 0;)
-    levels[i] = coarser(levels[i + 1], uint32_t{1} << static_cast<uint32_t>(i));
+  for (size_t i = finest; i-- > 0;) levels[i] = coarser(levels[i + 1]);
   return levels;
 }
 
 }  // namespace
+
+size_t placeOf(size_t texel, uint32_t level) {
+  const size_t side = size_t{1} << level;
+  const size_t x = texel % side, y = texel / side % side;
+  size_t place = texel / (side * side) * side * side;
+  for (uint32_t bit = 0; bit < level; ++bit)
+    place |= (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1);
+  return place;
+}
 
 LightTree::LightTree(const Panorama& panorama, uint32_t size) {
   assert(std::has_single_bit(size));
@@ -272,29 +276,61 @@ struct Charlie {
       table[i] = static_cast<float>(std::pow(1 - cosine, 0.5 / lobe.alpha()) * cosine);
     }
   }
+  /// Whether there is nothing of the lobe where 1 - cosine is from `least` to `most`.
+  bool isDark(float least, float most) const {
+    return least >= 1 || (1 - most) * scale >= static_cast<float>(kSteps);
+  }
   template <size_t N>
   void operator()(Lanes<N>& lanes) const {
-    for (float& x : lanes) {
-      const float cosine = 1 - x;
-      const float place = std::min((cosine > 0 ? cosine : 0.0F) * scale, static_cast<float>(kSteps));
-      const auto step = static_cast<int32_t>(place);
-      const float* at = &table[static_cast<size_t>(step)];
-      x = at[0] + (at[1] - at[0]) * (place - static_cast<float>(step));
+    std::array<int32_t, N> steps;
+    for (size_t i = 0; i < N; ++i) {
+      const float cosine = 1 - lanes[i];
+      lanes[i] = std::min((cosine > 0 ? cosine : 0.0F) * scale, static_cast<float>(kSteps));
+      steps[i] = static_cast<int32_t>(lanes[i]);
+    }
+    for (size_t i = 0; i < N; ++i) {
+      const float* at = &table[static_cast<size_t>(steps[i])];
+      lanes[i] = at[0] + (at[1] - at[0]) * (lanes[i] - static_cast<float>(steps[i]));
     }
   }
 };
 
+/// Adds a cell to as many lanes as there are numbers, from the first of them on: what the lobe is there for
+/// the cell and for its light.
+template <size_t M, size_t N>
+void weigh(const Cell& cell, const Lanes<M>& weight, const Lanes<M>& factor, size_t first, Together<N>& all) {
+  for (size_t i = 0; i < M; ++i) {
+    all.weight[first + i] += weight[i] * cell.angle;
+    all.r[first + i] += factor[i] * cell.flux[0];
+    all.g[first + i] += factor[i] * cell.flux[1];
+    all.b[first + i] += factor[i] * cell.flux[2];
+  }
+}
+
 template <class Shape, size_t N>
-void add(const Cell& cell, const Shape& shape, Together<N>& all) {
-  Lanes<N> weight = apart(all, cell.middle);
+void add(const Cell& cell, Lanes<N> weight, const Shape& shape, Together<N>& all) {
   shape(weight);
   Lanes<N> factor = apart(all, cell.light);
   shape(factor);
-  for (size_t i = 0; i < N; ++i) {
-    all.weight[i] += weight[i] * cell.angle;
-    all.r[i] += factor[i] * cell.flux[0];
-    all.g[i] += factor[i] * cell.flux[1];
-    all.b[i] += factor[i] * cell.flux[2];
+  weigh(cell, weight, factor, 0, all);
+}
+
+/// A narrow ring has few of the lanes at once: four that it has none of are left out, which changes no
+/// number.
+template <size_t N>
+void add(const Cell& cell, const Lanes<N>& weight, const Charlie& shape, Together<N>& all) {
+  constexpr size_t kFour = 4;
+  const Lanes<N> factor = apart(all, cell.light);
+  for (size_t first = 0; first < N; first += kFour) {
+    Lanes<kFour> weights, factors;
+    std::copy_n(&weight[first], kFour, weights.begin());
+    std::copy_n(&factor[first], kFour, factors.begin());
+    const auto [least_weight, most_weight] = boundsOf(weights);
+    const auto [least_factor, most_factor] = boundsOf(factors);
+    if (shape.isDark(least_weight, most_weight) && shape.isDark(least_factor, most_factor)) continue;
+    shape(weights);
+    shape(factors);
+    weigh(cell, weights, factors, first, all);
   }
 }
 
@@ -311,18 +347,16 @@ void addAll(const LightTree& tree, const Lobe& lobe, const Shape& shape, double 
     const auto [level, index] = open[--count];
     const Cell& cell = tree.level(level)[index];
     const double size = 2.0 / (uint32_t{1} << level);  // at least its width, and half its diagonal
-    const auto [least, most] = boundsOf(apart(all, cell.middle));
+    const Lanes<N> to_middle = apart(all, cell.middle);
+    const auto [least, most] = boundsOf(to_middle);
     const double high = 1 - double{least}, low = 1 - double{most};
     if (high < -size || low > end + size) continue;
     const bool leaf = level + 1 == tree.levels();
     if (leaf || size * size <= fineness * fineness * lobe.scale2(low, high)) {
-      add(cell, shape, all);
+      add(cell, to_middle, shape, all);
       continue;
     }
-    const uint32_t row = uint32_t{1} << level;
-    const uint32_t first = (index / row) * 4 * row + (index % row) * 2;
-    for (const uint32_t child : {first, first + 1, first + 2 * row, first + 2 * row + 1})
-      open[count++] = {level + 1, child};
+    for (uint32_t child = 0; child < 4; ++child) open[count++] = {level + 1, 4 * index + child};
   }
 }
 

@@ -30,12 +30,17 @@ public:
 
   uint32_t size() const { return uint32_t{1} << (static_cast<uint32_t>(levels_.size()) - 1); }
   uint32_t levels() const { return static_cast<uint32_t>(levels_.size()); }
-  /// Of a level with 2^level cells in a row: face by face, row by row.
+  /// Of a level with 2^level cells in a row, in the order of placeOf().
   const std::vector<Cell>& level(uint32_t level) const { return levels_[level]; }
 
 private:
   std::vector<std::vector<Cell>> levels_;
 };
+
+/// Where the cell of a cube's texel stands, which are counted face by face and row by row, in a level of the
+/// tree: those that cell i is cut into are 4 i to 4 i + 3 of the next level, so that what lies together is
+/// read together.
+size_t placeOf(size_t texel, uint32_t level);
 
 /// A lobe about a direction, as a function of the cosine to it; only what is in front counts.
 class Lobe {

@@ -16,6 +16,8 @@ constexpr uint32_t kSmallestLevel = 8;   ///< of the specular cube
 constexpr uint32_t kCharliePart = 4;     ///< its size is this part of the specular cube's
 constexpr uint32_t kFinestTree = 512;    ///< where the cube is not larger itself
 constexpr double kCosineFineness = 0.1;  ///< of the irradiance: an error of 1e-4
+constexpr double kDraftCosineFineness = 0.3;
+constexpr uint32_t kDraftSize = 64, kDraftSamples = 64;
 
 /// Texels of a square that are filtered together, along a side.
 constexpr uint32_t kSide = 4;
@@ -31,7 +33,8 @@ struct Rows {
 
 /// The mean of the tree's cells that a texel of a mirror's level covers.
 Rgb mirrored(const LightTree& tree, size_t texel, uint32_t size) {
-  const Cell& cell = tree.level(static_cast<uint32_t>(std::countr_zero(size)))[texel];
+  const auto level = static_cast<uint32_t>(std::countr_zero(size));
+  const Cell& cell = tree.level(level)[placeOf(texel, level)];
   Rgb mean{};
   for (size_t i = 0; i < 3; ++i) mean[i] = cell.flux[i] / cell.angle;
   return mean;
@@ -77,7 +80,8 @@ public:
       add(maps.charlie[i], options.size / kCharliePart >> i,
           &filters_.emplace_back(tree, Lobe::charlie(roughness), fineness));
     }
-    add(maps.irradiance, kIrradianceSize, &filters_.emplace_back(tree, Lobe::cosine(), kCosineFineness));
+    add(maps.irradiance, kIrradianceSize,
+        &filters_.emplace_back(tree, Lobe::cosine(), options.draft ? kDraftCosineFineness : kCosineFineness));
   }
 
   void run(const MapProgress& progress) {
@@ -105,7 +109,10 @@ private:
     // The convolution with the cosine over pi, by order.
     constexpr double kCosine[] = {1.0, 2.0 / 3.0, 0.25};
     constexpr size_t kOrder[] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
-    for (const Cell& cell : tree_.level(tree_.levels() - 1)) {
+    const uint32_t finest = tree_.levels() - 1;
+    const std::vector<Cell>& cells = tree_.level(finest);
+    for (size_t texel = 0; texel < cells.size(); ++texel) {
+      const Cell& cell = cells[placeOf(texel, finest)];
       const std::array<double, 9> basis = harmonicsAt({cell.light[0], cell.light[1], cell.light[2]});
       for (size_t k = 0; k < 9; ++k) {
         for (size_t i = 0; i < 3; ++i) maps_.harmonics[k][i] += basis[k] * kCosine[kOrder[k]] * cell.flux[i];
@@ -168,12 +175,18 @@ std::array<double, 9> harmonicsAt(const Vec3& direction) {
           0.54627421529603959 * (x * x - y * y)};
 }
 
+MapOptions draftOf(const MapOptions& options) {
+  return {std::min(options.size, kDraftSize), std::min(options.samples, kDraftSamples), true};
+}
+
 uint32_t treeSizeOf(const Panorama& panorama, const MapOptions& options) {
+  if (options.draft) return options.size;
   const uint32_t finest = std::min(kFinestTree, std::bit_ceil(std::max(panorama.width / 4, 1U)));
   return std::max(finest, options.size);
 }
 
 uint32_t treeSizeOf(const texture::CubeLevel& cube, const MapOptions& options) {
+  if (options.draft) return options.size;
   return std::max(std::min(kFinestTree, std::bit_ceil(cube.size)), options.size);
 }
 

@@ -15,7 +15,11 @@ namespace lacquer::environment {
 struct MapOptions {
   uint32_t size = 256;      ///< of environment_specular's faces: a power of two from 32 on
   uint32_t samples = 1024;  ///< about how many parts of the environment each texel is made of
+  bool draft = false;       ///< no part is finer than a texel of the mirror
 };
+
+/// For a first look: at most 64 texels in a row, of about 64 parts each.
+MapOptions draftOf(const MapOptions& options);
 
 /// The nine real spherical harmonics up to the second order, at a unit direction.
 std::array<double, 9> harmonicsAt(const Vec3& direction);
