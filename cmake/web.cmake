@@ -32,8 +32,8 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c answer api bake edit environment exchange gltf graph interface json lang manifest material materialx mtlx photometry picture preview programs
-          prove schedule setting shader structures support texture)
+  foreach(folder c answer api bake edit environment exchange gltf graph interface json lang manifest material materialx model mtlx photometry picture preview programs
+          prove schedule setting shader structures support targets texture)
     target_compile_options(lacquer_${folder} PRIVATE -Oz)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)
