@@ -12,7 +12,10 @@ const [wasm, output, examples] = process.argv.slice(2).map((path) => resolve(pat
 const here = dirname(fileURLToPath(import.meta.url));
 const tsc = (...args) => execFileSync(process.execPath, [join(here, 'node_modules/typescript/bin/tsc'), ...args], { cwd: here, stdio: 'inherit' });
 
-const packed = gzipSync(readFileSync(wasm), { level: 9 }).toString('base64');
+const packedOf = (file) => gzipSync(readFileSync(file), { level: 9 }).toString('base64');
+const packed = packedOf(wasm);
+/** The compiler's module, which stands beside. */
+const compiler = join(dirname(wasm), 'lacquer-compiler.wasm');
 
 /** A file with what it names, as `lacquer view` puts it into the page. */
 function embedded(file) {
@@ -40,16 +43,19 @@ function copyExample(example, place) {
 async function makePackage() {
   const folder = join(output, 'package');
   mkdirSync(folder, { recursive: true });
-  for (const [name, source] of Object.entries({ index: 'index', gltf: 'gltf', webgpu: 'webgpu', three: 'three/index', babylon: 'babylon/index' })) {
+  for (const [name, source] of Object.entries({ library: 'library', index: 'index', compiler: 'compiler', gltf: 'gltf', webgpu: 'webgpu', three: 'three/index', babylon: 'babylon/index' })) {
     await build({
       entryPoints: [join(here, `src/${source}.ts`)], outfile: join(folder, `${name}.js`), bundle: true, format: 'esm', target: 'es2022',
-      external: ['./packed.js', 'three', '@babylonjs/*'],
+      // Both entries have the same classes.
+      external: ['./library.js', './packed.js', './packed-compiler.js', 'three', '@babylonjs/*'],
     });
   }
   tsc('-p', '.', '--noEmit');
   tsc('-p', 'tsconfig.types.json', '--outDir', folder);
   copyFileSync(wasm, join(folder, 'lacquer.wasm'));
+  copyFileSync(compiler, join(folder, 'lacquer-compiler.wasm'));
   writeFileSync(join(folder, 'packed.js'), `export default '${packed}';\n`);
+  writeFileSync(join(folder, 'packed-compiler.js'), `export default '${packedOf(compiler)}';\n`);
   for (const file of ['package.json', 'README.md']) copyFileSync(join(here, 'package', file), join(folder, file));
   for (const example of ['webgl2', 'webgpu', 'three', 'babylon']) copyExample(example, join(folder, 'examples', example));
   copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));

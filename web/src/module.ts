@@ -67,6 +67,24 @@ export async function compile(source: Source): Promise<WebAssembly.Module> {
   return WebAssembly.compile(source as BufferSource);
 }
 
+/** A module from beside a script, or from a copy of it that is a script. */
+export async function own(place: () => URL, copy: () => Promise<{ default: string }>): Promise<WebAssembly.Module> {
+  try {
+    return await compile(place());
+  } catch {
+    const { default: packed } = await copy();
+    const bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+    return compile(new Response(stream));
+  }
+}
+
+/** The exports; a call of what is none of them comes to `absent`. */
+function calls(exports: WebAssembly.Exports, absent?: (call: string) => never): Record<string, Call> {
+  const all: object = absent ? new Proxy({}, { get: (_all, name) => () => absent(String(name)) }) : {};
+  return Object.assign(Object.create(all), exports);
+}
+
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 
@@ -75,18 +93,19 @@ export class Instance {
   readonly call: Record<string, Call>;
   private readonly memory: WebAssembly.Memory;
 
-  private constructor(exports: WebAssembly.Exports) {
-    this.call = exports as unknown as Record<string, Call>;
+  private constructor(exports: WebAssembly.Exports, absent?: (call: string) => never) {
+    this.call = calls(exports, absent);
     this.memory = exports.memory as WebAssembly.Memory;
   }
 
-  static async make(source: Source): Promise<Instance> {
+  /** `absent` is told what is called that the module has not. */
+  static async make(source: Source, absent?: (call: string) => never): Promise<Instance> {
     const module = await compile(source);
     let memory: WebAssembly.Memory | undefined;
     const instance = await WebAssembly.instantiate(module, importsOf(module, () => memory!));
     memory = instance.exports.memory as WebAssembly.Memory;
     (instance.exports._initialize as () => void)();
-    return new Instance(instance.exports);
+    return new Instance(instance.exports, absent);
   }
 
   /** Bytes that the module may keep or write to; `use` is given their address, which holds as long as it runs. */

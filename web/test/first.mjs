@@ -1,6 +1,6 @@
 // How long the module takes, in a process that has compiled nothing of it yet: milliseconds of this thread on a processor,
 // where the system tells them (a machine may have other work), else by the clock. Prints JSON.
-//   node web/test/first.mjs [FILE]
+//   node web/test/first.mjs [FILE [index|compiler]]
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { output, read } from './native.mjs';
@@ -13,9 +13,10 @@ function spent() {
   }
 }
 
-const { load } = await import(join(output, 'package/index.js'));
+const entry = process.argv[3] ?? 'index';
+const { load } = await import(join(output, `package/${entry}.js`));
 const bytes = read(process.argv[2] ?? 'examples/car_paint.gltf');
-const wasm = readFileSync(join(output, 'package/lacquer.wasm'));
+const wasm = readFileSync(join(output, entry === 'compiler' ? 'package/lacquer-compiler.wasm' : 'package/lacquer.wasm'));
 const begin = spent();
 const library = await load(await WebAssembly.compile(wasm));
 const loaded = spent() - begin;

@@ -233,13 +233,13 @@ test('in a Vite project its WebGPU example draws, served and built', async (t) =
   await withWebGpu(t, place, (how) => inVite(vite, place, async (page) => assertPicture(await keptColors(page)), how));
 });
 
-test('its tarball has a README, examples of this version and the module once', () => {
+test('its tarball has a README, examples of this version and each module once', () => {
   const listed = JSON.parse(execFileSync('npm', ['pack', '--dry-run', '--json', '--offline'], { cwd: join(output, 'package'), encoding: 'utf8' }));
   const [{ name, version, files }] = listed;
   const paths = files.map(({ path }) => path);
   assert.equal(name, '@lacquer-shaders/lacquer');
-  assert.deepEqual(paths.filter((path) => path.endsWith('.wasm')), ['lacquer.wasm']);
-  for (const path of ['README.md', 'LICENSE', 'index.d.ts', 'examples/webgl2/index.html', 'examples/webgpu/main.js', 'three.js', 'three/index.d.ts', 'babylon.js', 'babylon/index.d.ts']) assert.ok(paths.includes(path), path);
+  assert.deepEqual(paths.filter((path) => path.endsWith('.wasm')).sort(), ['lacquer-compiler.wasm', 'lacquer.wasm']);
+  for (const path of ['README.md', 'LICENSE', 'index.d.ts', 'compiler.js', 'compiler.d.ts', 'library.js', 'library.d.ts', 'examples/webgl2/index.html', 'examples/webgpu/main.js', 'three.js', 'three/index.d.ts', 'babylon.js', 'babylon/index.d.ts']) assert.ok(paths.includes(path), path);
   const example = JSON.parse(readFileSync(join(output, 'package/examples/webgl2/package.json'), 'utf8'));
   assert.deepEqual(example.dependencies, { [name]: `^${version}` });
 });
