@@ -510,6 +510,14 @@ typedef struct lacquer_texture {
    */
   const char* array;
   uint32_t number;
+  /* With "binding": "arrays" not 0: `array` is a sampler2DArray, the number its layer, in the material's
+   * block. */
+  int layered;
+  /* With "static_samplers": the sampler that nobody binds, numbers as of lacquer_used_texture; its register
+   * in space 4 of Direct3D 12's root signature. */
+  int has_static_sampler;
+  int wrap_s, wrap_t, mag_filter, min_filter;
+  uint32_t static_register;
 } lacquer_texture;
 /* A vertex attribute ("TEXCOORD_0"; without a vertex stage what the fragment stage is given), or a colour. */
 typedef struct lacquer_place {

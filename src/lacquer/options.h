@@ -82,6 +82,8 @@ enum class BindingModel : uint8_t {
   Sets,      ///< blocks and textures of their own, bound for each (docs/bindings.md)
   Bindless,  ///< lists of objects and of materials and one array of textures, by numbers that the instance
              ///< brings: one pipeline and one draw for all materials of a structure
+  Arrays,    ///< as Sets, but the material's textures are layers of one texture, or of as many as it has
+             ///< samplers and formats: for what takes sixteen textures
 };
 
 /// What operations are taken to compute where something is proved of them (docs/intervals.md).
@@ -128,8 +130,12 @@ struct Options {
   /// Each at most once; none makes a manifest without code.
   std::vector<Target> targets{std::begin(kShaderTargets), std::end(kShaderTargets)};
   Parameters parameters = Parameters::Uniform;
-  /// Bindless: not of Target::GlslGl and Target::Essl, nor beside `fallback`.
+  /// Bindless: not of Target::GlslGl and Target::Essl, nor beside `fallback`. Arrays: not beside `programs`.
   BindingModel binding = BindingModel::Sets;
+  /// The samplers that the file says of a material's textures are a part of its structure, and of Direct3D's
+  /// root signature: nobody binds them (ReflectedTexture::static_sampler). Not beside `programs` and
+  /// `fallback`.
+  bool static_samplers = false;
   Lights lights;
   /// Of the library's switches, those that are to be other than it says, by name; the three below are
   /// switches, too.

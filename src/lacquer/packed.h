@@ -17,7 +17,7 @@
 #include <stdint.h>
 
 #define LACQUER_PACKED_MAGIC 0x4d50514cu /* "LQPM" */
-#define LACQUER_PACKED_VERSION 3u
+#define LACQUER_PACKED_VERSION 4u
 #define LACQUER_PACKED_NONE 0xffffffffu /* no index */
 
 /* `count` elements from the byte `at` of the file on. The comment behind a list names its elements. */
@@ -185,6 +185,14 @@ typedef struct {
   uint32_t role;                                 /* 0 material, 1 environment, 2 object */
   uint32_t srgb;
   lacquer_packed_place place;
+  /* Of a shader made with --binding bindless or arrays: what the material's is taken from, which stands at
+   * the place, else empty; and the byte of the material's block where its number there lies, an int. */
+  lacquer_packed_text array;
+  uint32_t number;
+  /* With --static-samplers: its sampler, numbers as in a file's textures, and its register in space 4. */
+  uint32_t static_register;
+  uint8_t has_static_sampler, wrap_s, wrap_t, mag_filter, min_filter, layered;
+  uint8_t pad[2];
 } lacquer_packed_texture;
 
 typedef struct {

@@ -82,6 +82,13 @@ struct ReflectedTexture : BoundResource {
   /// the place, and the byte of the material's record where its number in the array lies, an int.
   std::string array;
   uint32_t number = 0;
+  /// By BindingModel::Arrays: the layer of `array`, a sampler2DArray, is the int at `number` of the
+  /// material's block.
+  bool layered = false;
+  /// With Options::static_samplers: what all materials of the shader look it up by. The register of its
+  /// sampler in Direct3D 12's root signature is `static_register` of space 4.
+  std::optional<TextureSampler> static_sampler;
+  uint32_t static_register = 0;
   bool srgb = false;  ///< of the material: its texels are to be decoded, by the image's format
 };
 

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lacquer/contract.h"
@@ -71,10 +72,23 @@ struct SetLayouts {
       set.insert(place, {at.binding, type, array.empty() ? 1 : textures, kBoth, nullptr});
     };
     for (const UniformBlock& block : reflection.blocks) put(block, descriptorType(block, dynamic));
-    for (const ReflectedTexture& texture : reflection.textures)
-      put(texture, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture.array);
+    for (const ReflectedTexture& texture : reflection.textures) {
+      if (!texture.layered) {
+        put(texture, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture.array);
+        continue;
+      }
+      BoundResource all = texture;
+      all.name = texture.array;
+      put(all, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+    }
     return fits;
   }
+  /// Makes the samplers of a shader that was added immutable where they are static
+  /// (Options::static_samplers): what is written to such a binding is the image alone. `make` gives the
+  /// VkSampler of a VkSamplerCreateInfo, once for each kind; it must live as long as the layouts do, and so
+  /// must this, for the bindings point here. False where another shader's is there.
+  template <class Make>
+  bool fixSamplers(const Reflection& reflection, const Make& make);
   /// What vkCreateDescriptorSetLayout() is given; it points here.
   VkDescriptorSetLayoutCreateInfo info(uint32_t set) const {
     const auto count = static_cast<uint32_t>(sets[set].size());
@@ -101,6 +115,7 @@ struct SetLayouts {
   }
 
 private:
+  std::deque<std::pair<TextureSampler, VkSampler>> fixed_;
   std::vector<VkDescriptorBindingFlags> flags_[kSets];
   mutable VkDescriptorSetLayoutBindingFlagsCreateInfo flag_infos_[kSets]{};
 };
@@ -597,6 +612,24 @@ inline VkSamplerCreateInfo samplerInfo(const TextureSampler& from) {
   // 0.25 is what Vulkan names for a filter without mip levels: larger would choose the minifying one.
   info.maxLod = levels ? VK_LOD_CLAMP_NONE : 0.25F;
   return info;
+}
+template <class Make>
+bool SetLayouts::fixSamplers(const Reflection& reflection, const Make& make) {
+  bool fits = true;
+  for (const ReflectedTexture& texture : reflection.textures) {
+    if (!texture.static_sampler || texture.at.set >= kSets) continue;
+    const TextureSampler& wanted = *texture.static_sampler;
+    const auto known =
+        std::find_if(fixed_.begin(), fixed_.end(), [&](const auto& one) { return one.first == wanted; });
+    const auto& made =
+        known != fixed_.end() ? *known : fixed_.emplace_back(wanted, make(samplerInfo(wanted)));
+    for (VkDescriptorSetLayoutBinding& binding : sets[texture.at.set]) {
+      if (binding.binding != texture.at.binding) continue;
+      fits &= binding.pImmutableSamplers == nullptr || binding.pImmutableSamplers == &made.second;
+      if (binding.pImmutableSamplers == nullptr) binding.pImmutableSamplers = &made.second;
+    }
+  }
+  return fits;
 }
 /// The sampler of what is the frame's or the object's.
 inline VkSamplerCreateInfo samplerInfo(const ReflectedTexture& texture) {

@@ -136,6 +136,14 @@ void compareShader(const PackedFile& packed, const lacquer_packed_shader& shader
   ASSERT_EQ(textures.size(), reflection.textures.size());
   for (size_t i = 0; i < textures.size(); ++i) {
     const ReflectedTexture& from = reflection.textures[i];
+    EXPECT_EQ(packed.text(textures[i].array), from.array);
+    EXPECT_EQ(textures[i].number, from.number);
+    EXPECT_EQ(textures[i].layered != 0, from.layered);
+    EXPECT_EQ(textures[i].has_static_sampler != 0, from.static_sampler.has_value());
+    EXPECT_EQ(textures[i].static_register, from.static_register);
+    const TextureSampler sampler = from.static_sampler.value_or(TextureSampler{});
+    EXPECT_EQ(textures[i].wrap_t, static_cast<uint8_t>(sampler.wrap_t));
+    EXPECT_EQ(textures[i].min_filter, static_cast<uint8_t>(sampler.min_filter));
     EXPECT_EQ(textures[i].place.stages, (from.vertex ? 1U : 0U) + (from.fragment ? 2U : 0U));
   }
   EXPECT_EQ(packed.all<lacquer_packed_input>(shader.inputs).size(), reflection.inputs.size());
@@ -203,6 +211,11 @@ TEST(Packed, saysItWhateverTheOptions) {
   options.targets.insert(options.targets.end(), {Target::Wgsl, Target::Msl, Target::Hlsl});
   options.argument_buffers = true;
   comparePacked(file, options);
+  options.binding = BindingModel::Arrays;
+  options.static_samplers = true;
+  comparePacked(std::string(LACQUER_EXAMPLES) + "/car_paint.gltf", options);
+  options.binding = BindingModel::Sets;
+  options.static_samplers = false;
   options.template_name = "surface";
   comparePacked(std::string(LACQUER_EXAMPLES) + "/core.gltf", options);
   options.template_name.clear();

@@ -65,9 +65,10 @@ std::string fileText() {
   return gltf.dump();
 }
 
-Contract made(BindingModel binding) {
+Contract made(BindingModel binding, bool static_samplers = false) {
   Options options;
   options.binding = binding;
+  options.static_samplers = static_samplers;
   options.targets = {Target::Spirv};
   options.ibl = false;
   Messages messages;
@@ -131,6 +132,8 @@ public:
       : device_(device), contract_(contract), reflection_(contract.shaders[0].shader.reflection()) {
     layouts_.textures = 2 * kImages;
     EXPECT_TRUE(layouts_.add(reflection_));
+    EXPECT_TRUE(layouts_.fixSamplers(reflection_,
+                                     [&](const VkSamplerCreateInfo& info) { return device_.sampler(info); }));
     makeLayouts();
     makeImages();
     fillFrame();
@@ -217,10 +220,14 @@ private:
   /// Each of another colour and pattern, with smaller levels.
   void makeImages() {
     constexpr uint32_t kTexels = 32;
+    constexpr VkImageUsageFlags kImage =
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     VkSamplerCreateInfo sampler_info = vk::samplerInfo(TextureSampler{});
     sampler_info.maxLod = VK_LOD_CLAMP_NONE;
     sampler_ = device_.sampler(sampler_info);
     for (const bool srgb : {false, true}) {
+      constexpr uint32_t kLevels = 6;
+      std::vector<unsigned char> all;
       for (uint32_t i = 0; i < kImages; ++i) {
         std::vector<unsigned char> texels;
         for (uint32_t t = 0; t < kTexels * kTexels; ++t) {
@@ -229,13 +236,13 @@ private:
           for (const uint32_t channel : {60 + 17 * i, 240 - 15 * i, 90 + 40 * (i % 4), 255U})
             texels.push_back(static_cast<unsigned char>(bright ? channel : channel / 2 + 40));
         }
-        constexpr uint32_t kLevels = 6;
-        images_.push_back(device_.image(
-            vk::textureFormat(srgb), kTexels, kTexels,
-            VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-            kLevels));
+        images_.push_back(device_.image(vk::textureFormat(srgb), kTexels, kTexels, kImage, kLevels));
         device_.fill(images_.back(), {texels});
+        all.insert(all.end(), texels.begin(), texels.end());
       }
+      arrays_.push_back(device_.image(vk::textureFormat(srgb), kTexels, kTexels, kImage, kLevels, kImages,
+                                      VK_IMAGE_VIEW_TYPE_2D_ARRAY));
+      device_.fill(arrays_.back(), {all});
     }
   }
 
@@ -276,12 +283,16 @@ private:
     const VkDescriptorSet set = allocate(vk::kMaterialSet);
     const ContractUse& use = useOf(material);
     vk::SetWrites writes;
-    const Buffer block =
-        device_.buffer(use.block.data(), use.block.size(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+    std::vector<unsigned char> bytes(use.block.size());
+    std::memcpy(bytes.data(), use.block.data(), bytes.size());
+    for (const UsedTexture& texture : use.textures) {
+      const ReflectedTexture& slot = *vk::findTexture(reflection_, texture.slot);
+      if (slot.layered) vk::setNumber(bytes.data(), slot, texture.texture);
+      const Image& image = slot.layered ? arrays_[texture.srgb ? 1 : 0] : images_[imageOf(texture)];
+      writes.image(set, slot.at.binding, image.view, sampler_);
+    }
+    const Buffer block = bufferOf(bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     writes.buffer(set, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, block.handle, 0, use.block.size());
-    for (const UsedTexture& texture : use.textures)
-      writes.image(set, vk::findTexture(reflection_, texture.slot)->at.binding,
-                   images_[imageOf(texture)].view, sampler_);
     vkUpdateDescriptorSets(device_.handle(), writes.size(), writes.data(), 0, nullptr);
     return set;
   }
@@ -439,6 +450,7 @@ private:
   std::array<VkDescriptorSetLayout, vk::kSets> set_layouts_{};
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   std::vector<Image> images_;
+  std::vector<Image> arrays_;  ///< the same as layers: of numbers, of colours
   std::vector<vk::DrawNumbers> numbers_;
   VkSampler sampler_ = VK_NULL_HANDLE;
   VkDescriptorSet frame_ = VK_NULL_HANDLE;
@@ -502,6 +514,33 @@ TEST(Bindless, oneDrawOfAllMaterialsHasThePixelsOfMany) {
   EXPECT_EQ(colors.size(), kMaterials);
 }
 
+/// The same pixels with two textures for each material, and samplers that nobody binds.
+TEST(TextureArrays, haveThePixelsOfTexturesApart) {
+  std::string why;
+  const std::unique_ptr<Device> device = deviceOf(why);
+  if (device == nullptr) GTEST_SKIP() << "NOT TESTED: " << why;
+  const Contract plain = made(BindingModel::Sets), arrays = made(BindingModel::Arrays),
+                 fixed = made(BindingModel::Arrays, true);
+  ASSERT_FALSE(testing::Test::HasFailure());
+  testing::internal::CaptureStdout();
+  const std::vector<float> apart = Picture(*device, plain).plain();
+  const std::vector<float> together = Picture(*device, arrays).plain();
+  const std::vector<float> immutable = Picture(*device, fixed).plain();
+  const std::string said = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(said.find("VUID"), std::string::npos) << said;
+  EXPECT_GT(std::count_if(apart.begin(), apart.end(), [](float x) { return x != 0; }),
+            static_cast<std::ptrdiff_t>(apart.size() / 2));
+  EXPECT_TRUE(apart == together);
+  EXPECT_TRUE(apart == immutable);
+  for (const Contract* contract : {&arrays, &fixed}) {
+    std::map<uint32_t, uint32_t> places;
+    for (const ReflectedTexture& texture : contract->shaders[0].shader.reflection().textures) {
+      if (texture.role == TextureRole::Material) ++places[texture.at.binding];
+    }
+    EXPECT_EQ(places, (std::map<uint32_t, uint32_t>{{1, 2}, {2, 2}}));
+  }
+}
+
 /// A material's record begins with the bytes of its block, and its textures' numbers stand behind them.
 TEST(Bindless, recordsAreWhatIsPacked) {
   const Contract plain = made(BindingModel::Sets), bindless = made(BindingModel::Bindless);
@@ -560,7 +599,8 @@ TEST(Bindless, refusesWhatCannotStand) {
       {"no-bindless", [](Options& o) { o.targets = {Target::Essl}; }},
       {"no-bindless", [](Options& o) { o.targets = {Target::GlslGl}; }},
       {"fallback-bindless", [](Options& o) { o.fallback = true; }},
-      {"unknown-enumerator", [](Options& o) { o.binding = static_cast<BindingModel>(2); }},
+      {"bindless-samplers", [](Options& o) { o.static_samplers = true; }},
+      {"unknown-enumerator", [](Options& o) { o.binding = static_cast<BindingModel>(3); }},
   };
   for (const Refusal& refusal : refusals) {
     Options options;

@@ -27,6 +27,7 @@ const std::vector<Row>& rows() {
       {"targets", Decides::Run, [](Options& o) { o.targets = {Target::Hlsl}; }},
       {"parameters", Decides::Module, [](Options& o) { o.parameters = Parameters::Baked; }},
       {"binding", Decides::Module, [](Options& o) { o.binding = BindingModel::Bindless; }},
+      {"static_samplers", Decides::Module, [](Options& o) { o.static_samplers = true; }},
       {"lights", Decides::Graph, [](Options& o) { o.lights.mode = Lights::Mode::Scene; }},
       {"ibl", Decides::Graph, [](Options& o) { o.ibl = false; }},
       {"multiple_scattering", Decides::Graph, [](Options& o) { o.multiple_scattering = false; }},

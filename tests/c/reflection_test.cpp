@@ -92,6 +92,22 @@ json texturesOf(const lacquer_shader* shader) {
         {"flat", texture.at.flat},    {"stages", stagesOf(texture.at.vertex != 0, texture.at.fragment != 0)}};
     if (texture.role == LACQUER_TEXTURE_MATERIAL) row["color_space"] = texture.srgb != 0 ? "srgb" : "linear";
     if (*texture.array != 0) row["array"] = texture.array, row["number"] = texture.number;
+    if (texture.layered != 0) row["layered"] = true;
+    if (texture.has_static_sampler != 0) {
+      constexpr const char* kWraps[] = {"repeat", "clamp", "mirror"};
+      constexpr const char* kFilters[] = {"",
+                                          "nearest",
+                                          "linear",
+                                          "nearest-mipmap-nearest",
+                                          "linear-mipmap-nearest",
+                                          "nearest-mipmap-linear",
+                                          "linear-mipmap-linear"};
+      row["static_sampler"] = {{"wrap_s", kWraps[texture.wrap_s]},
+                               {"wrap_t", kWraps[texture.wrap_t]},
+                               {"mag_filter", kFilters[texture.mag_filter]},
+                               {"min_filter", kFilters[texture.min_filter]}};
+      row["static_register"] = texture.static_register;
+    }
     rows.push_back(std::move(row));
   }
   EXPECT_EQ(rows.size(), lacquer_shader_texture_count(shader));
@@ -168,6 +184,26 @@ TEST(Reflection, IsTheEntryOfTheManifest) {
     for (size_t t = 0; lacquer_shader_texture(c.get(), t, &texture, sizeof texture) != 0; ++t)
       expectApis(texture.at, entry, texture.name, true);
   }
+}
+
+TEST(Reflection, SaysLayersAndStaticSamplers) {
+  const CMessages said;
+  const json wanted = {
+      {"targets", {"essl", "hlsl"}}, {"binding", "arrays"}, {"static_samplers", true}, {"validate", false}};
+  const COptions options = optionsFrom(wanted.dump(), said);
+  const std::string path = (sourceFolder() / "examples/car_paint.gltf").string();
+  const CScene scene(lacquer_scene_load(path.c_str(), options.get(), said));
+  const CGraph graph(lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, options.get(), said));
+  const CShader shader(lacquer_graph_generate(graph.get(), options.get(), said));
+  ASSERT_NE(shader, nullptr);
+  const json entry = json::parse(lacquer_shader_interface(shader.get(), nullptr));
+  EXPECT_EQ(texturesOf(shader.get()), entry["textures"]);
+  size_t layered = 0;
+  for (const json& texture : entry["textures"]) {
+    layered += texture.contains("layered") ? 1 : 0;
+    EXPECT_EQ(texture.contains("static_sampler"), texture["role"] == "material");
+  }
+  EXPECT_GT(layered, 1U);
 }
 
 /// Without bindings for each, the material is a list and its textures have numbers in it.

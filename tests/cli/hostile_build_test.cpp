@@ -263,6 +263,7 @@ std::map<std::string, std::string> shadersIn(const Workplace& place, const std::
 std::map<const void*, Words> wordsOf(const Options& options) {
   return {{&options.parameters, {"--params", "spec"}},
           {&options.binding, {"--binding", "bindless"}},
+          {&options.static_samplers, {"--static-samplers"}},
           {&options.validate, {"--no-validate"}},
           {&options.spirv_route, {"--spirv-from", "glslang"}},
           {&options.relaxed, {"--relaxed", "0.0123"}},

@@ -38,7 +38,10 @@ Options optionsOf(std::string_view bytes) {
   if (below(4) == 0) options.profile = "openpbr";
   constexpr const char* kAs[] = {"", "", "gltf", "materialx"};
   options.as = kAs[below(4)];
-  if (below(4) == 0) options.binding = BindingModel::Bindless;
+  constexpr BindingModel kBindings[] = {BindingModel::Bindless, BindingModel::Arrays, BindingModel::Sets,
+                                        BindingModel::Sets};
+  options.binding = kBindings[below(4)];
+  options.static_samplers = options.binding != BindingModel::Bindless && below(4) == 0;
   return options;
 }
 

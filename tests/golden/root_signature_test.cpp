@@ -211,5 +211,140 @@ TEST(SharedSamplers, AreOneByDefines) {
   EXPECT_GT(most, 1U);
 }
 
+/// Two materials of one structure, of which the second looks a texture up otherwise.
+constexpr const char* kSamplers = R"({"asset": {"version": "2.0"}, "images": [{"uri": "a.png"}],
+    "samplers": [{}, {"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9984}],
+    "textures": [{"source": 0}, {"source": 0, "sampler": 0}, {"source": 0, "sampler": 1}],
+    "accessors": [{"componentType": 5126, "type": "VEC3", "count": 3},
+      {"componentType": 5126, "type": "VEC2", "count": 3}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [
+      {"material": 0, "attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 1}},
+      {"material": 1, "attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 1}}]}],
+    "materials": [
+      {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}},
+       "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 2}},
+      {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 2}},
+       "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 2}}]})";
+
+Contract samplersBy(const Options& options) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kSamplers, "samplers.gltf", options, messages);
+  EXPECT_TRUE(scene) << textOf(messages);
+  Contract made = contract(scene, {}, options, messages);
+  EXPECT_TRUE(made.ok) << textOf(messages);
+  return made;
+}
+
+/// What the fragment stage binds of samplers, as "sREGISTER spaceSET".
+std::set<std::string> samplersOf(const Shader& shader, const std::string& defines) {
+  const auto words = check::compile(defines + shader.fragmentText(Target::Hlsl), Target::Hlsl,
+                                    check::Stage::Fragment, "static.hlsl");
+  EXPECT_TRUE(words) << format(words.error()[0]);
+  std::set<std::string> found;
+  for (const check::Taken& place : check::reflectPlaces(words.value_or(check::Spirv()))) {
+    if (place.binding >= check::kHlslSamplerShift)
+      found.insert(fmt::format("s{} space{}", place.binding - check::kHlslSamplerShift, place.set));
+  }
+  return found;
+}
+
+constexpr const char* kRepeat =
+    "StaticSampler(s180, space=4, filter=FILTER_MIN_MAG_MIP_LINEAR, addressU=TEXTURE_ADDRESS_WRAP, "
+    "addressV=TEXTURE_ADDRESS_WRAP, addressW=TEXTURE_ADDRESS_CLAMP)";
+constexpr const char* kClamp =
+    "StaticSampler(s97, space=4, filter=FILTER_MIN_MAG_MIP_POINT, addressU=TEXTURE_ADDRESS_CLAMP, "
+    "addressV=TEXTURE_ADDRESS_MIRROR, addressW=TEXTURE_ADDRESS_CLAMP)";
+
+TEST(StaticSamplers, AreTheFilesInTheRootSignature) {
+  Options options;
+  options.targets = {Target::Hlsl};
+  const Contract plain = samplersBy(options);
+  options.static_samplers = true;
+  const Contract made = samplersBy(options);
+  ASSERT_EQ(plain.shaders.size(), 1U);
+  ASSERT_EQ(made.shaders.size(), 2U) << "one for each way of looking textures up";
+  const std::string signature =
+      fmt::format("{}, {}, {}", plain.shaders[0].shader.reflection().root_signature, kClamp, kRepeat);
+  for (const ContractShader& one : made.shaders) {
+    EXPECT_EQ(one.shader.reflection().root_signature, signature);
+    EXPECT_EQ(definedIn(one.shader.fragmentText(Target::Hlsl)), signature);
+    const std::set<std::string> bound = samplersOf(one.shader, "");
+    EXPECT_TRUE(bound.contains("s180 space4") && bound.contains("s97 space4"));
+    EXPECT_TRUE(
+        std::none_of(bound.begin(), bound.end(), [](const auto& at) { return at.ends_with("space1"); }));
+    // Where there are no spaces they are bound, each once.
+    const size_t frames = bound.size() - 2;
+    EXPECT_EQ(samplersOf(one.shader, "#define LACQUER_SPACES 0\n").size(), frames + 2);
+  }
+}
+
+TEST(StaticSamplers, AreReflected) {
+  Options options;
+  options.static_samplers = true;
+  const Contract made = samplersBy(options);
+  const TextureSampler repeat{Wrap::Repeat, Wrap::Repeat, Filter::Linear, Filter::LinearMipmapLinear};
+  const TextureSampler clamp{Wrap::Clamp, Wrap::Mirror, Filter::Nearest, Filter::NearestMipmapNearest};
+  for (const ContractMaterial& material : made.materials) {
+    const Reflection& reflection = made.shaders.at(material.uses.at(0).shader).shader.reflection();
+    for (const UsedTexture& used : material.uses[0].textures) {
+      const auto slot = std::find_if(reflection.textures.begin(), reflection.textures.end(),
+                                     [&](const ReflectedTexture& one) { return one.slot == used.slot; });
+      ASSERT_NE(slot, reflection.textures.end());
+      EXPECT_EQ(slot->static_sampler, used.texture == 2 ? clamp : repeat) << used.slot;
+      EXPECT_EQ(slot->static_register, used.texture == 2 ? 97U : 180U) << used.slot;
+    }
+    for (const ReflectedTexture& texture : reflection.textures)
+      EXPECT_EQ(texture.static_sampler.has_value(), texture.role == TextureRole::Material) << texture.name;
+  }
+}
+
+/// What an engine makes shaders by before there are any.
+TEST(StaticSamplers, TellStructuresApart) {
+  for (const bool fixed : {false, true}) {
+    Options options;
+    options.static_samplers = fixed;
+    Messages messages;
+    const Scene scene = Scene::fromMemory(kSamplers, "samplers.gltf", options, messages);
+    std::set<std::string> structures;
+    for (size_t i = 0; i < 2; ++i)
+      structures.insert(scene.graph(i, {true}, options, messages).structure(options, messages));
+    EXPECT_EQ(structures.size(), fixed ? 2U : 1U);
+    EXPECT_FALSE(structures.contains("")) << textOf(messages);
+  }
+}
+
+/// A graph that is written and read makes the same shader.
+TEST(StaticSamplers, AreInTheGraphsText) {
+  Options options;
+  options.static_samplers = true;
+  options.validate = false;
+  options.targets = {Target::Hlsl};
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kSamplers, "samplers.gltf", options, messages);
+  Graph graph = scene.graph(0, {true}, options, messages);
+  ASSERT_TRUE(graph) << textOf(messages);
+  const std::string text = graph.toJson();
+  EXPECT_NE(text.find(R"("sampler": ["clamp", "mirror", "nearest", "nearest-mipmap-nearest"])"),
+            std::string::npos)
+      << text;
+  Graph again = Graph::fromJson(text, "samplers.json", messages);
+  ASSERT_TRUE(again) << textOf(messages);
+  EXPECT_EQ(again.toJson(), text);
+  EXPECT_EQ(again.generate(options, messages).id(), graph.generate(options, messages).id());
+}
+
+TEST(StaticSamplers, AreNotOfProgramsThatMaterialsShare) {
+  for (const bool fallback : {false, true}) {
+    Options options;
+    options.static_samplers = true;
+    options.fallback = fallback;
+    options.programs = fallback ? 0 : 1;
+    Messages messages;
+    const Scene scene = Scene::fromMemory(kSamplers, "samplers.gltf", {}, messages);
+    EXPECT_FALSE(contract(scene, {}, options, messages).ok);
+    EXPECT_NE(textOf(messages).find("shared-samplers"), std::string::npos) << textOf(messages);
+  }
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -119,7 +119,7 @@ private:
       each<lacquer_packed_field>(one.fields, [&](const auto& field) { text(field.name), text(field.type); });
     });
     each<lacquer_packed_texture>(of.textures, [&](const auto& one) {
-      text(one.name), text(one.slot), text(one.type), text(one.sampler);
+      text(one.name), text(one.slot), text(one.type), text(one.sampler), text(one.array);
     });
     each<lacquer_packed_input>(of.inputs, [&](const auto& one) { text(one.name), text(one.type); });
     each<lacquer_packed_output>(of.outputs,

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "targets/samples.h"
 
 namespace lacquer::targets {
@@ -44,6 +46,46 @@ TEST(RootSignature, PutsTheFramesIntoATableWhereTheyDoNotFit) {
   EXPECT_NE(rootSignature(manyBlocks(30, 2))
                 .find("DescriptorTable(CBV(b0, space=0, numDescriptors=30, flags=DESCRIPTORS_VOLATILE))"),
             std::string::npos);
+}
+
+TEST(RootSignature, HasARegisterForEverySampler) {
+  using Wrap = ir::Sampler::Wrap;
+  using Filter = ir::Sampler::Filter;
+  std::set<uint32_t> registers;
+  size_t count = 0;
+  for (const Wrap s : {Wrap::Repeat, Wrap::Clamp, Wrap::Mirror}) {
+    for (const Wrap t : {Wrap::Repeat, Wrap::Clamp, Wrap::Mirror}) {
+      for (const Filter mag : {Filter::Nearest, Filter::Linear}) {
+        for (int min = 1; min <= static_cast<int>(Filter::LinearMipmapLinear); ++min, ++count)
+          registers.insert(staticRegister({s, t, mag, static_cast<Filter>(min)}));
+      }
+    }
+  }
+  EXPECT_EQ(registers.size(), count);
+}
+
+TEST(RootSignature, SaysFiltersInDirect3DsWords) {
+  using Filter = ir::Sampler::Filter;
+  struct Case {
+    Filter mag, min;
+    const char* text;
+  };
+  const Case cases[] = {
+      {Filter::Linear, Filter::LinearMipmapLinear, "filter=FILTER_MIN_MAG_MIP_LINEAR,"},
+      {Filter::Linear, Filter::LinearMipmapNearest, "filter=FILTER_MIN_MAG_LINEAR_MIP_POINT,"},
+      {Filter::Linear, Filter::NearestMipmapLinear, "filter=FILTER_MIN_POINT_MAG_MIP_LINEAR,"},
+      {Filter::Linear, Filter::NearestMipmapNearest, "filter=FILTER_MIN_POINT_MAG_LINEAR_MIP_POINT,"},
+      {Filter::Nearest, Filter::LinearMipmapLinear, "filter=FILTER_MIN_LINEAR_MAG_POINT_MIP_LINEAR,"},
+      {Filter::Nearest, Filter::LinearMipmapNearest, "filter=FILTER_MIN_LINEAR_MAG_MIP_POINT,"},
+      {Filter::Nearest, Filter::NearestMipmapLinear, "filter=FILTER_MIN_MAG_POINT_MIP_LINEAR,"},
+      {Filter::Nearest, Filter::NearestMipmapNearest, "filter=FILTER_MIN_MAG_MIP_POINT,"},
+      {Filter::Nearest, Filter::Nearest, "filter=FILTER_MIN_MAG_MIP_POINT, maxLOD=0.25f,"},
+      {Filter::Linear, Filter::Linear, "filter=FILTER_MIN_MAG_LINEAR_MIP_POINT, maxLOD=0.25f,"}};
+  for (const Case& one : cases) {
+    Builder b;
+    b.module.textures.emplace_back().sampler = ir::Sampler{{}, {}, one.mag, one.min};
+    EXPECT_NE(rootSignature(b.module).find(one.text), std::string::npos) << rootSignature(b.module);
+  }
 }
 
 }  // namespace lacquer::targets

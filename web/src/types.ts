@@ -41,8 +41,11 @@ export interface Options {
   template?: string;
   targets?: Target[];
   parameters?: 'uniform' | 'baked' | 'spec';
-  /** 'bindless': lists of objects and materials and an array of textures, by numbers of the instance. */
-  binding?: 'sets' | 'bindless';
+  /** 'bindless': lists of objects and materials and an array of textures, by numbers of the instance. 'arrays': a material's
+   * textures are layers of one. */
+  binding?: 'sets' | 'bindless' | 'arrays';
+  /** The samplers that the file says are a part of a shader's interface. */
+  static_samplers?: boolean;
   lights?: 'any' | 'scene' | Record<string, number>;
   switches?: Record<string, boolean>;
   ibl?: boolean;
@@ -288,9 +291,14 @@ export interface Interface {
     channels: string;
     color_space?: 'srgb' | 'linear';
     content?: 'color' | 'normal' | 'data';
-    /** With `bindless`: the array that the material's is taken from, and the byte of its record with its number there. */
+    /** With `bindless`: the array that the material's is taken from, and the byte of its record with its number there. With
+     * `layered` it is a layer of the array texture of that name. */
     array?: string;
     number?: number;
+    layered?: true;
+    /** With `static_samplers`. */
+    static_sampler?: ContractTexture['sampler'];
+    static_register?: number;
   }[];
   inputs?: { name: string; location: number; type: string }[];
   /** Of the target "hlsl": the root signature of Direct3D 12 (docs/bindings.md). */

@@ -248,7 +248,7 @@ export function pipelineStates(
   { mirrored = false, format = 'rgba16float', depthFormat = 'depth24plus' }:
     { mirrored?: boolean; format?: GPUTextureFormat; depthFormat?: GPUTextureFormat } = {},
 ) {
-  const array = shader.textures?.find((texture) => texture.array)?.array;
+  const array = shader.textures?.find((texture) => texture.array && !texture.layered)?.array;
   if (array !== undefined) {
     throw new Error(`the shader takes textures from the array '${array}', and WebGPU has no arrays of textures: make it with ` +
       "binding: 'sets'");

@@ -344,6 +344,12 @@ lacquer_packed_texture Packer::texture(const ReflectedTexture& from) {
   to.role = static_cast<uint32_t>(from.role);
   to.srgb = from.srgb ? 1 : 0;
   to.place = place(from, true);
+  to.array = bytes_.text(from.array);
+  to.number = from.number;
+  to.layered = from.layered ? 1 : 0;
+  to.has_static_sampler = from.static_sampler ? 1 : 0;
+  to.static_register = from.static_register;
+  put(to.wrap_s, to.wrap_t, to.mag_filter, to.min_filter, from.static_sampler.value_or(TextureSampler{}));
   return to;
 }
 

@@ -100,9 +100,10 @@ Strings standIns(const Structure& structure, const gltf::VertexAttributes& attri
 void Describer::use(const gltf::VertexAttributes& attributes) {
   std::string key;
   // Patterns are a graph of the material's own: its properties do not say what becomes of it. What is watched
-  // is this material's.
+  // is this material's. A shape has no samplers.
   const Strings& live = setting_.options.live;
-  const bool own = material_.patterns || std::any_of(live.begin(), live.end(), [&](const std::string& name) {
+  const bool own = material_.patterns || knowsSamplers(setting_.options) ||
+                   std::any_of(live.begin(), live.end(), [&](const std::string& name) {
                      return watchedPath(name, material_.index).has_value();
                    });
   if (KnownShapes* shapes = own ? nullptr : structures_.shapes()) {
@@ -124,6 +125,7 @@ void Describer::use(const gltf::VertexAttributes& attributes) {
 }
 
 void Describer::use(graph::Graph& graph, const gltf::VertexAttributes& attributes) {
+  if (knowsSamplers(setting_.options)) addSamplers(graph, nullptr);
   use({graph, {}, {}}, attributes, {}, {});
 }
 

@@ -19,6 +19,15 @@ struct LastEnumerator<RootKind> {
   static constexpr RootKind value = RootKind::Samplers;
 };
 
+template <>
+struct LastEnumerator<Wrap> {
+  static constexpr Wrap value = Wrap::Mirror;
+};
+template <>
+struct LastEnumerator<Filter> {
+  static constexpr Filter value = Filter::LinearMipmapLinear;
+};
+
 template <class Archive>
 void fields(Archive& archive, RootParameter& of) {
   archive(of.kind, of.space, of.binding, of.count);
@@ -45,7 +54,11 @@ void fields(Archive& archive, UniformBlock& of) {
 template <class Archive>
 void fields(Archive& archive, ReflectedTexture& of) {
   archive(static_cast<BoundResource&>(of), of.slot, of.type, of.sampler, of.role, of.srgb, of.array,
-          of.number);
+          of.number, of.layered);
+  TextureSampler sampler = of.static_sampler.value_or(TextureSampler());
+  bool fixed = of.static_sampler.has_value();
+  archive(fixed, sampler.wrap_s, sampler.wrap_t, sampler.mag_filter, sampler.min_filter, of.static_register);
+  if (fixed) of.static_sampler = sampler;
 }
 template <class Archive>
 void fields(Archive& archive, ShaderInput& of) {

@@ -66,6 +66,9 @@ public:
     key_.number(graph.textures.size());
     for (const ir::TextureSlot& t : graph.textures) {
       key_.text(t.name).number(t.type).number(t.srgb).number(t.environment);
+      if (!t.sampler) continue;
+      key_.number('s').number(t.sampler->wrap_s).number(t.sampler->wrap_t);
+      key_.number(t.sampler->mag).number(t.sampler->min);
     }
     key_.number(graph.nodes.size());
     for (const graph::Node& node : graph.nodes) {
@@ -188,7 +191,9 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
                                             optimization(setting.options),
                                             cost::chooserOf(setting.options),
                                             other,
-                                            setting.options.binding == BindingModel::Bindless});
+                                            setting.options.binding == BindingModel::Bindless,
+                                            setting.options.binding == BindingModel::Arrays,
+                                            setting.options.static_samplers});
 }
 
 }  // namespace
@@ -318,8 +323,9 @@ Filling fillingOf(const graph::Graph& graph, const material::Material& material)
 }
 
 bool hasArrays(const Reflection& reflection) {
-  return std::any_of(reflection.textures.begin(), reflection.textures.end(),
-                     [](const ReflectedTexture& texture) { return !texture.array.empty(); });
+  return std::any_of(
+      reflection.textures.begin(), reflection.textures.end(),
+      [](const ReflectedTexture& texture) { return !texture.array.empty() && !texture.layered; });
 }
 
 bool withinLimits(const Structure& structure, const Filling& filling) {

@@ -94,6 +94,19 @@ UniformBlock blockOf(const ir::Module& module, const ir::Block& block) {
   return made;
 }
 
+/// The byte of the material's block where its number lies.
+uint32_t numberOf(const ir::Module& module, const ir::TextureSlot& slot) {
+  const auto block = std::find_if(module.blocks.begin(), module.blocks.end(),
+                                  [](const ir::Block& one) { return one.role == ir::BlockRole::Material; });
+  return block == module.blocks.end() ? 0 : block->fields[slot.number].offset;
+}
+
+TextureSampler publicOf(const ir::Sampler& from) {
+  const auto wrap = [](ir::Sampler::Wrap one) { return static_cast<Wrap>(one); };
+  const auto filter = [](ir::Sampler::Filter one) { return static_cast<Filter>(one); };
+  return {wrap(from.wrap_s), wrap(from.wrap_t), filter(from.mag), filter(from.min)};
+}
+
 ReflectedTexture textureOf(const ir::Module& module, const ir::TextureSlot& slot) {
   ReflectedTexture made;
   static_cast<BoundResource&>(made) = boundOf(slot.name, slot.binding, false);
@@ -104,14 +117,21 @@ ReflectedTexture textureOf(const ir::Module& module, const ir::TextureSlot& slot
               : slot.environment ? TextureRole::Environment
                                  : TextureRole::Material;
   made.srgb = slot.srgb;
+  if (slot.sampler) {
+    made.static_sampler = publicOf(*slot.sampler);
+    made.static_register = targets::staticRegister(*slot.sampler);
+  }
+  made.layered = !slot.layers.empty();
+  if (made.layered) {
+    made.array = slot.layers;
+    made.number = numberOf(module, slot);
+  }
   if (slot.array.empty()) return made;
   made.array = slot.array;
   made.sampler = slot.array + "_sampler";
   const targets::MslBinding msl = targets::mslArray(slot.binding);
   made.msl = made.msl_argument = {msl.buffer, msl.index, msl.sampler};
-  for (const ir::Block& block : module.blocks) {
-    if (block.role == ir::BlockRole::Material) made.number = block.fields[slot.number].offset;
-  }
+  made.number = numberOf(module, slot);
   return made;
 }
 
@@ -181,6 +201,21 @@ std::vector<SpecConstant> specConstantsOf(const ir::Module& module) {
   return rows;
 }
 
+bool isLayerOfOne(const ReflectedTexture& a, const ReflectedTexture& b) {
+  return a.layered && b.layered && a.array == b.array;
+}
+
+/// What is bound once is read by all stages that read a layer of it.
+void shareStages(std::vector<ReflectedTexture>& textures) {
+  for (ReflectedTexture& to : textures) {
+    for (const ReflectedTexture& from : textures) {
+      if (!isLayerOfOne(to, from)) continue;
+      to.vertex |= from.vertex;
+      to.fragment |= from.fragment;
+    }
+  }
+}
+
 std::vector<std::pair<std::string, size_t>> webgpuLimits(const Reflection& of, size_t varyings) {
   constexpr size_t kHalfFloats = 8;  // bytes of an rgba16float, and of an rgba8unorm as WebGPU counts
   std::vector<std::pair<std::string, size_t>> asked;
@@ -196,7 +231,11 @@ std::vector<std::pair<std::string, size_t>> webgpuLimits(const Reflection& of, s
     }
     return std::max(vertex, fragment);
   };
-  const size_t textures = most(of.textures, [](const ReflectedTexture&) { return true; });
+  const size_t textures = most(of.textures, [&](const ReflectedTexture& texture) {
+    const auto first = std::find_if(of.textures.begin(), of.textures.end(),
+                                    [&](const ReflectedTexture& one) { return isLayerOfOne(one, texture); });
+    return first == of.textures.end() || &*first == &texture;
+  });
   const auto blocks = [&](bool lists) {
     return most(of.blocks, [&](const UniformBlock& block) { return block.list.empty() != lists; });
   };
@@ -246,6 +285,7 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
     if (texture.role == TextureRole::Material)
       texture.slot = used[0].slots[i].empty() ? used[1].slots[i] : used[0].slots[i];
   }
+  shareStages(made.textures);
   addInputs(made, module, used, has_vertex);
   for (const ir::Output& output : module.outputs) {
     if (output.kind == ir::OutputKind::Color)

@@ -574,6 +574,9 @@ void members(A& a, Of<A, ReflectedTexture>& of) {
   if (of.role == TextureRole::Material) colorSpace(a, of.srgb);
   a.some("array", of.array);
   if (!of.array.empty()) a("number", of.number);
+  a.some("layered", of.layered);
+  a.some("static_sampler", of.static_sampler);
+  if (of.static_sampler) a("static_register", of.static_register);
 }
 
 template <class A>

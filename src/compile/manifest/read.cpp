@@ -213,6 +213,11 @@ public:
       if (!block) number(row, buffers ? "sampler_id" : "sampler", at, to.sampler);
       stages(row, at, *bound);
     });
+    for (ReflectedTexture& texture : of_.textures) {
+      if (!texture.layered) continue;
+      const ReflectedTexture& first = *bySampler(texture.sampler);
+      texture.msl = first.msl, texture.msl_argument = first.msl_argument;
+    }
     return buffers;
   }
 
@@ -238,7 +243,7 @@ private:
       if (block.name == name) return &block;
     }
     for (ReflectedTexture& texture : of_.textures) {
-      if (texture.name == name) return &texture;
+      if ((texture.layered ? texture.array : texture.name) == name) return &texture;
     }
     return nullptr;
   }

@@ -122,6 +122,18 @@ std::string_view dimensionOf(std::string_view type) {
   return type == ir::typeName(ir::Type::Texture3D) ? "3d" : "2d";
 }
 
+/// Whether an earlier texture has the place: the layers of an array are bound once.
+bool isBoundBefore(const Reflection& of, const ReflectedTexture& texture) {
+  if (!texture.layered) return false;
+  const auto first = std::find_if(of.textures.begin(), of.textures.end(), [&](const ReflectedTexture& one) {
+    return one.layered && one.array == texture.array;
+  });
+  return &*first != &texture;
+}
+const std::string& boundName(const ReflectedTexture& texture) {
+  return texture.layered ? texture.array : texture.name;
+}
+
 /// "bindings": what createBindGroupLayout() wants, in its words, with the group of each; "limits": what
 /// requestDevice() must be asked for beyond WebGPU's defaults, with colour attachments of `rgba16float`.
 void writeWebGpu(const Reflection& of, JsonText& to) {
@@ -143,10 +155,11 @@ void writeWebGpu(const Reflection& of, JsonText& to) {
     });
   }
   for (const ReflectedTexture& texture : of.textures) {
+    if (isBoundBefore(of, texture)) continue;
     const bool compares = texture.type == ir::typeName(ir::Type::Texture2DShadow);
     // An object's textures hold numbers in 32-bit floats, which WebGPU does not filter.
     const bool numbers = texture.role == TextureRole::Object;
-    row(texture, texture.name, texture.wgsl.binding, [&] {
+    row(texture, boundName(texture), texture.wgsl.binding, [&] {
       to.key("texture").beginObject();
       to.key("sampleType").string(compares ? "depth" : numbers ? "unfilterable-float" : "float");
       to.key("viewDimension").string(dimensionOf(texture.type)).endObject();
@@ -167,20 +180,22 @@ void writeWebGpu(const Reflection& of, JsonText& to) {
 void writeMetal(const Reflection& of, bool argument_buffers, JsonText& to) {
   to.beginObject().key("entry").string("main0").key("argument_buffers").boolean(argument_buffers);
   to.key("bindings").beginArray();
-  const auto row = [&](const BoundResource& bound, bool block) {
+  const auto row = [&](const BoundResource& bound, const std::string& name, bool block) {
     const MslPlace& at = argument_buffers ? bound.msl_argument : bound.msl;
     writeBound(
         bound, to,
         [&] {
-          to.key("name").string(bound.name);
+          to.key("name").string(name);
           if (argument_buffers) to.key("argument_buffer").integer(at.argument_buffer);
           to.key(argument_buffers ? "id" : block ? "buffer" : "texture").integer(at.index);
           if (!block) to.key(argument_buffers ? "sampler_id" : "sampler").integer(at.sampler);
         },
         [] {});
   };
-  for (const UniformBlock& block : of.blocks) row(block, true);
-  for (const ReflectedTexture& texture : of.textures) row(texture, false);
+  for (const UniformBlock& block : of.blocks) row(block, block.name, true);
+  for (const ReflectedTexture& texture : of.textures) {
+    if (!isBoundBefore(of, texture)) row(texture, boundName(texture), false);
+  }
   to.endArray().endObject();
 }
 

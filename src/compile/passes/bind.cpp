@@ -147,7 +147,8 @@ Diagnostics checkPlaces(const ir::Module& module) {
   for (const ir::Block& block : module.blocks) add(block.binding, block.instance, block.list);
   std::set<std::string_view> arrays;
   for (const ir::TextureSlot& slot : module.textures) {
-    if (slot.array.empty() || arrays.insert(slot.array).second) add(slot.binding, slot.name, true);
+    const std::string& shared = slot.array.empty() ? slot.layers : slot.array;
+    if (shared.empty() || arrays.insert(shared).second) add(slot.binding, slot.name, true);
   }
   return wrong;
 }

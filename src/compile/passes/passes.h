@@ -81,6 +81,11 @@ void bind(ir::Module& module, const OtherLayout& other = {});
 /// then draws all materials of a structure. The module must be bound.
 void makeBindless(ir::Module& module);
 
+/// Makes one texture of those of the material that have one sampler and one format, each a layer of it, whose
+/// number lies behind the material's block. A texture whose sampler is not known stays as it is. The module
+/// must be bound.
+void makeArrays(ir::Module& module);
+
 /// Marks the operations of fragments that may be done at half precision, as long as no colour changes by more
 /// than `error` (analysis/relax.h). 0 marks none.
 void relax(ir::Module& module, double error);

@@ -56,6 +56,12 @@ constexpr std::array kPasses{
          [](ir::Module& m, const PipelineOptions& o) {
            if (o.bindless) makeBindless(m);
          }},
+    Pass{{"arrays", "with `--binding arrays`: makes the material's textures layers of one"},
+         [](ir::Module& m, const PipelineOptions& o) {
+           if (o.arrays) makeArrays(m);
+           if (o.static_samplers) return;
+           for (ir::TextureSlot& slot : m.textures) slot.sampler.reset();
+         }},
 };
 
 constexpr auto kInfos = [] {
@@ -85,7 +91,7 @@ void optimizeFragment(ir::Module& module, const PipelineOptions& options) {
                                    [](const Pass& pass) { return pass.info.name == "optimize"; });
     PipelineOptions silent = options;
     silent.after = nullptr;
-    silent.bindless = false;  // what is drawn with is compared as it is bound plainly
+    silent.bindless = silent.arrays = false;  // what is drawn with is compared as it is bound plainly
     std::vector<ir::Module> forms;
     for (const optimize::Candidate& candidate : found) {
       forms.push_back(candidate.module);

@@ -31,7 +31,9 @@ struct PipelineOptions {
   optimize::Settings optimize{};
   Choose choose{};  ///< of what `optimize` finds; the model where there is none
   OtherLayout other{};
-  bool bindless = false;  ///< Options::binding
+  bool bindless = false;         ///< Options::binding
+  bool arrays = false;           ///< the same
+  bool static_samplers = false;  ///< Options::static_samplers
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().

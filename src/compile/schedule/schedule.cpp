@@ -228,7 +228,7 @@ private:
       }
     }
     for (const ir::TextureSlot& slot : module_.textures) {
-      const std::string& name = slot.array.empty() ? slot.name : slot.array;
+      const std::string& name = slot.array.empty() ? slot.boundName() : slot.array;
       names_.take(name);
       names_.take(name + "_sampler");
     }

@@ -23,12 +23,12 @@ enum class Decides : uint8_t {
 /// the names must be all of Options.
 template <class Each>
 void eachOption(const Options& options, Each each) {
-  const auto& [profile, as, simplify, template_name, targets, parameters, binding, lights, switches, ibl,
-               multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, properties,
-               spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories,
-               node_texts, materialx_directories, materialx_texts, document_texts, jobs, cache, cache_size,
-               depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs, fallback, weights,
-               programs_report, programs_model, pipelines] = options;
+  const auto& [profile, as, simplify, template_name, targets, parameters, binding, static_samplers, lights,
+               switches, ibl, multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused,
+               properties, spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live,
+               node_directories, node_texts, materialx_directories, materialx_texts, document_texts, jobs,
+               cache, cache_size, depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs,
+               fallback, weights, programs_report, programs_model, pipelines] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, as);
   each(Decides::Graph, simplify);
@@ -36,6 +36,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Run, targets);
   each(Decides::Module, parameters);
   each(Decides::Module, binding);
+  each(Decides::Module, static_samplers);
   each(Decides::Graph, lights);
   each(Decides::Graph, switches);
   each(Decides::Graph, ibl);

@@ -172,11 +172,21 @@ Diagnostics checkReading(const Options& options) {
 Diagnostics checkOptions(const Options& options) {
   Diagnostics wrong = checkReading(options);
   checkEnumerator("Options::spirv_route", options.spirv_route, 2, wrong);
-  checkEnumerator("Options::binding", options.binding, 2, wrong);
+  checkEnumerator("Options::binding", options.binding, 3, wrong);
   if (options.binding == BindingModel::Bindless && options.fallback) {
     add(wrong, "fallback-bindless",
         "a fallback has the places of each material's own shader, whose records are of another length",
         "leave the fallback out, or bind by sets");
+  }
+  if (knowsSamplers(options) && (options.programs != 0 || options.fallback)) {
+    add(wrong, "shared-samplers",
+        "materials that share a program have samplers of their own, which are no part of it",
+        "leave `programs` and the fallback out, or static samplers and arrays");
+  }
+  if (options.static_samplers && options.binding == BindingModel::Bindless) {
+    add(wrong, "bindless-samplers",
+        "an array of textures has a sampler for each of them, none of which is static",
+        "leave static samplers out, or bind by sets");
   }
   std::set<Target> seen;
   for (const Target target : options.targets) {
@@ -225,6 +235,10 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
 optimize::Settings optimization(const Options& options) {
   return {static_cast<int>(options.optimize), options.optimize_error,
           optimize::findFamily(options.optimize_for)};
+}
+
+bool knowsSamplers(const Options& options) {
+  return options.static_samplers || options.binding == BindingModel::Arrays;
 }
 
 lower::ParameterMode parameterMode(const Options& options) {

@@ -35,5 +35,7 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
 /// What the options ask of the search; the family null where none is named.
 optimize::Settings optimization(const Options& options);
 lower::ParameterMode parameterMode(const Options& options);
+/// Whether the samplers that a file says are a part of the material's graph.
+bool knowsSamplers(const Options& options);
 
 }  // namespace lacquer

@@ -61,6 +61,15 @@ private:
   Diagnostics found_;
 };
 
+/// The first of the textures that are layers of one with it.
+uint32_t firstOf(const ir::Module& module, uint32_t texture) {
+  const std::string& layers = module.textures[texture].layers;
+  for (uint32_t i = 0; !layers.empty() && i < texture; ++i) {
+    if (module.textures[i].layers == layers) return i;
+  }
+  return texture;
+}
+
 /// By index: the blocks and textures that a stage reads, or has bound for programs beside it.
 struct Read {
   std::set<uint32_t> blocks, textures, attributes;
@@ -75,7 +84,7 @@ struct Read {
       if (module.dag[id].op != ir::Op::Input) continue;
       const ir::Input& input = module.dag.inputOf(id);
       const bool own = input.kind == ir::InputKind::Texture && module.textures[input.field].array.empty();
-      if (own) textures.insert(input.field);
+      if (own) textures.insert(firstOf(module, input.field));
       if (input.kind == ir::InputKind::Attribute) attributes.insert(input.field);
     }
     const bool ir::Stages::*const of =
@@ -142,7 +151,8 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
   limits.check(fmt::format("a stage of the shader reads {} uniform blocks", uniforms), uniforms,
                &DeviceLimits::blocks, "put what is filled together into one block");
   limits.check(fmt::format("a stage of the shader reads {} textures", textures), textures,
-               &DeviceLimits::textures, "textures of one size can be the layers of an array");
+               &DeviceLimits::textures,
+               "textures of one size can be the layers of an array: --binding arrays");
   limits.check(fmt::format("the vertex stage's inputs take {} locations", locations), locations,
                &DeviceLimits::attributes, "several numbers can be one attribute, a vector");
   const auto varyings = static_cast<uint32_t>(module.varyings.size());

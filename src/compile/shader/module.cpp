@@ -28,6 +28,26 @@ passes::LightFacts lightsOf(const gltf::Scene& scene) {
 
 namespace {
 
+/// What the file leaves open is linear, between mip levels as well.
+ir::Sampler samplerOf(const gltf::Sampler& from) {
+  constexpr int kClamp = 33071, kMirror = 33648, kNearest = 9728, kLinear = 9729, kFirstMipmap = 9984;
+  const auto wrap = [](int number) {
+    return number == kClamp    ? ir::Sampler::Wrap::Clamp
+           : number == kMirror ? ir::Sampler::Wrap::Mirror
+                               : ir::Sampler::Wrap::Repeat;
+  };
+  constexpr ir::Sampler::Filter kMipmaps[] = {
+      ir::Sampler::Filter::NearestMipmapNearest, ir::Sampler::Filter::LinearMipmapNearest,
+      ir::Sampler::Filter::NearestMipmapLinear, ir::Sampler::Filter::LinearMipmapLinear};
+  ir::Sampler made{wrap(from.wrapS), wrap(from.wrapT)};
+  if (from.magFilter == kNearest) made.mag = ir::Sampler::Filter::Nearest;
+  if (from.minFilter == kNearest) made.min = ir::Sampler::Filter::Nearest;
+  if (from.minFilter == kLinear) made.min = ir::Sampler::Filter::Linear;
+  const int mipmap = from.minFilter - kFirstMipmap;
+  if (mipmap >= 0 && mipmap < 4) made.min = kMipmaps[mipmap];
+  return made;
+}
+
 /// Notes what nodes of patterns ask for by `given _NAME` and the primitive has.
 void askAttributes(graph::Graph& graph, const gltf::VertexAttributes& attributes,
                    const graph::Graph& patterns, const lang::Library& library) {
@@ -85,7 +105,24 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
     if (!material.closures.empty()) model::placeNormals(*graph, attributes, language);
   }
   simplify(*graph, language, *simpler);
+  if (knowsSamplers(options)) addSamplers(*graph, &material);
   return graph;
+}
+
+void addSamplers(graph::Graph& graph, const material::Material* material) {
+  for (graph::Texture& texture : graph.textures) {
+    if (texture.type != ir::Type::Texture2D || texture.sampler) continue;
+    if (!texture.file.empty() || texture.own_sampler) {
+      const auto wrap = [&](size_t i) { return static_cast<ir::Sampler::Wrap>(texture.wrap[i]); };
+      texture.sampler = ir::Sampler{wrap(0), wrap(1)};
+      if (texture.nearest) texture.sampler->mag = ir::Sampler::Filter::Nearest;
+      continue;
+    }
+    if (material == nullptr || texture.pointer.empty()) continue;
+    const auto it = std::find_if(material->textures.begin(), material->textures.end(),
+                                 [&](const auto& one) { return one.info.pointer == texture.pointer; });
+    if (it != material->textures.end()) texture.sampler = samplerOf(it->info.sampler);
+  }
 }
 
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
@@ -100,7 +137,9 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
                                             optimization(options),
                                             choose,
                                             {},
-                                            options.binding == BindingModel::Bindless});
+                                            options.binding == BindingModel::Bindless,
+                                            options.binding == BindingModel::Arrays,
+                                            options.static_samplers});
 }
 
 Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {

@@ -19,6 +19,10 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
                                 const Language& language, const Options& options, Diagnostics& warnings,
                                 model::Origins* origins = nullptr);
 
+/// Puts the samplers that are known into the graph: those of its own images, and of the file's textures by
+/// the material, where there is one.
+void addSamplers(graph::Graph& graph, const material::Material* material);
+
 using AfterPass = std::function<void(std::string_view pass, const ir::Module&)>;
 
 /// A checked graph to a placed module.

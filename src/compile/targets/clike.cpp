@@ -188,7 +188,7 @@ Expression Printer::input(const ir::Input& input) const {
       assert(found != all.end());
       return {attributeName(*found)};
     }
-    case InputKind::Texture: return {dialect_.name(module_.textures[input.field].name)};
+    case InputKind::Texture: return {dialect_.name(module_.textures[input.field].boundName())};
     case InputKind::FrontFacing: return {std::string(dialect_.frontFacing())};
     case InputKind::LightIndex: return {ir::kLightIndexName};
     case InputKind::LoopIndex:
@@ -599,10 +599,12 @@ std::string outputName(const ir::Output& output) { return "out_" + output.name; 
 std::vector<uint32_t> declaredTextures(const ir::Module& module, const schedule::Program& program) {
   std::vector<uint32_t> declared;
   for (const uint32_t index : program.textures) {
-    const std::string& array = module.textures[index].array;
-    const bool known = !array.empty() && std::any_of(declared.begin(), declared.end(), [&](uint32_t other) {
-      return module.textures[other].array == array;
-    });
+    const ir::TextureSlot& slot = module.textures[index];
+    const bool shared = !slot.array.empty() || !slot.layers.empty();
+    const bool known =
+        shared && std::any_of(declared.begin(), declared.end(), [&](uint32_t other) {
+          return module.textures[other].array == slot.array && module.textures[other].layers == slot.layers;
+        });
     if (!known) declared.push_back(index);
   }
   return declared;

@@ -245,7 +245,7 @@ private:
       const std::string place = this->place(slot.binding);
       const std::string layout = place.empty() ? "" : fmt::format("layout({}) ", place);
       text.line(fmt::format("{}uniform {} {};", layout, ir::typeName(slot.type),
-                            slot.array.empty() ? slot.name : slot.array + "[]"));
+                            slot.array.empty() ? slot.boundName() : slot.array + "[]"));
     }
   }
 

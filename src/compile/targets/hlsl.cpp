@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -158,7 +159,9 @@ public:
       block(text, module.blocks[index]);
     }
     if (!program.textures.empty()) blank();
-    for (const uint32_t index : declaredTextures(module, program)) texture(text, module.textures[index]);
+    std::map<uint32_t, std::string> fixed;
+    for (const uint32_t index : declaredTextures(module, program))
+      texture(text, module.textures[index], fixed);
     sizes(text, module, program);
     blank();
     openMain(text, parameters(module, program));
@@ -262,7 +265,8 @@ private:
     if (ofObject(block)) text.line("#endif");
   }
 
-  void texture(Text& text, const ir::TextureSlot& slot) const {
+  /// `fixed`: by the registers of static samplers, who has declared them.
+  void texture(Text& text, const ir::TextureSlot& slot, std::map<uint32_t, std::string>& fixed) const {
     const bool compares = slot.type == Type::Texture2DShadow;
     if (!slot.array.empty()) {
       text.line("// A range without an end: Shader Model 5.1 and later.");
@@ -272,7 +276,14 @@ private:
                             slot.binding.binding, slot.binding.set));
       return;
     }
-    text.line(fmt::format("{} {} : {};", type(slot.type), slot.name, placeOf('t', slot.binding)));
+    text.line(fmt::format("{} {} : {};", type(slot.type), slot.boundName(), placeOf('t', slot.binding)));
+    if (slot.sampler) {
+      const uint32_t number = staticRegister(*slot.sampler);
+      const auto [first, fresh] = fixed.try_emplace(number, samplerName(slot));
+      if (!fresh) return text.line(fmt::format("#define {} {}", samplerName(slot), first->second));
+      return text.line(fmt::format("SamplerState {} : LACQUER_AT(s{}, s{}, space{});", samplerName(slot),
+                                   slot.binding.flat, number, kStaticSpace));
+    }
     // A define of that name shares another texture's: the file's textures often have one sampler.
     text.line("#ifndef " + samplerName(slot));
     text.line(fmt::format("{} {} : {};", compares ? "SamplerComparisonState" : "SamplerState",

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 namespace lacquer::targets {
 
@@ -60,7 +62,44 @@ std::string textOf(const RootParameter& parameter) {
   return {};
 }
 
+/// Direct3D's word for it, and which level is the last.
+std::string filterText(const ir::Sampler& sampler) {
+  using Filter = ir::Sampler::Filter;
+  const Filter min = sampler.min;
+  const bool near_min =
+      min == Filter::Nearest || min == Filter::NearestMipmapNearest || min == Filter::NearestMipmapLinear;
+  const bool levels = min != Filter::Nearest && min != Filter::Linear;
+  const bool between = levels && min != Filter::NearestMipmapNearest && min != Filter::LinearMipmapNearest;
+  // MIN_a_MAG_b_MIP_c: equal neighbours stand together, "MIN_MAG_LINEAR_MIP_POINT".
+  const bool linear[] = {!near_min, sampler.mag != Filter::Nearest, between};
+  constexpr std::string_view kStages[] = {"MIN", "MAG", "MIP"};
+  std::string text = "FILTER";
+  for (size_t i = 0; i < 3; ++i) {
+    text += fmt::format("_{}", kStages[i]);
+    if (i == 2 || linear[i] != linear[i + 1]) text += linear[i] ? "_LINEAR" : "_POINT";
+  }
+  // Without levels the first is read, as a larger one or a smaller one.
+  return levels ? text : text + ", maxLOD=0.25f";
+}
+
+std::string textOf(const ir::Sampler& sampler) {
+  constexpr std::string_view kWraps[] = {"WRAP", "CLAMP", "MIRROR"};
+  const auto wrap = [&](ir::Sampler::Wrap one) { return kWraps[static_cast<size_t>(one)]; };
+  return fmt::format(
+      "StaticSampler(s{}, space={}, filter={}, addressU=TEXTURE_ADDRESS_{}, addressV=TEXTURE_ADDRESS_{}, "
+      "addressW=TEXTURE_ADDRESS_CLAMP)",
+      staticRegister(sampler), kStaticSpace, filterText(sampler), wrap(sampler.wrap_s), wrap(sampler.wrap_t));
+}
+
 }  // namespace
+
+uint32_t staticRegister(const ir::Sampler& sampler) {
+  constexpr uint32_t kWraps = 3, kMagnifying = 3;  // as many as there are words
+  uint32_t number = static_cast<uint32_t>(sampler.min);
+  number = number * kMagnifying + static_cast<uint32_t>(sampler.mag);
+  number = number * kWraps + static_cast<uint32_t>(sampler.wrap_t);
+  return number * kWraps + static_cast<uint32_t>(sampler.wrap_s);
+}
 
 std::vector<RootParameter> rootParameters(const ir::Module& module) {
   std::vector<RootParameter> made = {{RootKind::Constants, kDrawSpace}};
@@ -81,6 +120,11 @@ std::vector<RootParameter> rootParameters(const ir::Module& module) {
 std::vector<std::string> rootSignatureParts(const ir::Module& module) {
   std::vector<std::string> parts = {"RootFlags(ALLOW_INPUT_ASSEMBLER_INPUT_LAYOUT)"};
   for (const RootParameter& parameter : rootParameters(module)) parts.push_back(textOf(parameter));
+  std::map<uint32_t, std::string> samplers;
+  for (const ir::TextureSlot& slot : module.textures) {
+    if (slot.sampler) samplers.emplace(staticRegister(*slot.sampler), textOf(*slot.sampler));
+  }
+  for (auto& [number, text] : samplers) parts.push_back(std::move(text));
   return parts;
 }
 

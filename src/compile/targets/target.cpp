@@ -158,7 +158,7 @@ std::string commentText(std::string_view lines) {
 
 std::string blockName(const ir::Block& block) { return block.plural() ? block.name + "s" : block.name; }
 
-std::string samplerName(const ir::TextureSlot& slot) { return slot.name + "_sampler"; }
+std::string samplerName(const ir::TextureSlot& slot) { return slot.boundName() + "_sampler"; }
 
 PreshaderText preshaderText(const ir::Module& module) {
   std::vector<std::string> taken;

@@ -366,7 +366,7 @@ private:
 
   void texture(Text& text, const ir::TextureSlot& slot) const {
     const bool several = !slot.array.empty();
-    const std::string name = this->name(several ? slot.array : slot.name);
+    const std::string name = this->name(several ? slot.array : slot.boundName());
     const std::string_view sampler = slot.type == Type::Texture2DShadow ? "sampler_comparison" : "sampler";
     const auto of = [&](std::string_view one) {
       return several ? fmt::format("binding_array<{}>", one) : std::string(one);

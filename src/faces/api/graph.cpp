@@ -85,6 +85,7 @@ Result<graph::Graph> Graph::Impl::flat(const Options& options, const lang::Libra
   }
   if (Result<void> simpler = simplifyBuilt(flat, library, words); !simpler)
     return tl::make_unexpected(std::move(simpler.error()));
+  if (knowsSamplers(options)) addSamplers(flat, nullptr);
   return flat;
 }
 

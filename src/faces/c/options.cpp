@@ -67,7 +67,8 @@ bool setRoute(const Json& value, lacquer_options& to) {
 bool setBinding(const Json& value, lacquer_options& to) {
   if (value == "sets") to.options.binding = BindingModel::Sets;
   if (value == "bindless") to.options.binding = BindingModel::Bindless;
-  return value == "sets" || value == "bindless";
+  if (value == "arrays") to.options.binding = BindingModel::Arrays;
+  return value == "sets" || value == "bindless" || value == "arrays";
 }
 
 bool setLights(const Json& value, lacquer_options& to) {
@@ -138,7 +139,8 @@ constexpr Row<lacquer_options> kRows[] = {
     {"template", "a string", setText<&Options::template_name>},
     {"targets", "an array of names of targets", setTargets},
     {"parameters", "\"uniform\", \"baked\" or \"spec\"", setParameters},
-    {"binding", "\"sets\" or \"bindless\"", setBinding},
+    {"binding", "\"sets\", \"bindless\" or \"arrays\"", setBinding},
+    {"static_samplers", kTruth, setBool<&Options::static_samplers>},
     {"lights", "\"any\", \"scene\" or an object of counts", setLights},
     {"switches", "an object of true and false", setSwitches},
     {"ibl", kTruth, setBool<&Options::ibl>},

@@ -62,9 +62,23 @@ int lacquer_shader_texture(const lacquer_shader* shader, size_t index, lacquer_t
   const Reflection& all = reflectionOf(shader);
   if (index >= all.textures.size()) return 0;
   const lacquer::ReflectedTexture& of = all.textures[index];
-  const lacquer_texture made = {of.name.c_str(), of.type.c_str(),           of.sampler.c_str(),
-                                of.slot.c_str(), static_cast<int>(of.role), of.srgb ? 1 : 0,
-                                bindingOf(of),   of.array.c_str(),          of.number};
+  const lacquer::TextureSampler sampler = of.static_sampler.value_or(lacquer::TextureSampler());
+  const lacquer_texture made = {of.name.c_str(),
+                                of.type.c_str(),
+                                of.sampler.c_str(),
+                                of.slot.c_str(),
+                                static_cast<int>(of.role),
+                                of.srgb ? 1 : 0,
+                                bindingOf(of),
+                                of.array.c_str(),
+                                of.number,
+                                of.layered ? 1 : 0,
+                                of.static_sampler ? 1 : 0,
+                                static_cast<int>(sampler.wrap_s),
+                                static_cast<int>(sampler.wrap_t),
+                                static_cast<int>(sampler.mag_filter),
+                                static_cast<int>(sampler.min_filter),
+                                of.static_register};
   return fillRow(made, to, size);
 }
 

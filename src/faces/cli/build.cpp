@@ -19,6 +19,8 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
   if (options.parameters == Parameters::Baked) add({"--params", "baked"});
   if (options.parameters == Parameters::Spec) add({"--params", "spec"});
   if (options.binding == BindingModel::Bindless) add({"--binding", "bindless"});
+  if (options.binding == BindingModel::Arrays) add({"--binding", "arrays"});
+  if (options.static_samplers) add({"--static-samplers"});
   if (options.spirv_route == SpirvRoute::Glslang) add({"--spirv-from", "glslang"});
   if (options.debug) add({"--debug"});
   if (options.relaxed != 0) add({"--relaxed", fmt::format("{}", options.relaxed)});

@@ -79,9 +79,12 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option(
           "--binding", flags.binding,
           "sets: bound for each object and material; bindless: lists of them and an array of textures, "
-          "one draw for many materials (docs/bindings.md)")
-      ->check(CLI::IsMember({"sets", "bindless"}))
+          "one draw for many materials; arrays: a material's textures are layers of one (docs/bindings.md)")
+      ->check(CLI::IsMember({"sets", "bindless", "arrays"}))
       ->capture_default_str();
+  verb.add_flag("--static-samplers", flags.options.static_samplers,
+                "the samplers that the file says are a part of the shader's interface: of Direct3D's root "
+                "signature (docs/bindings.md)");
   verb.add_option("--spirv-from", flags.spirv_from, "direct, or glslang: through the GLSL, as a cross-check")
       ->check(CLI::IsMember({"direct", "glslang"}))
       ->capture_default_str();

@@ -211,7 +211,9 @@ std::string finish(OptionFlags& flags) {
   options.parameters = flags.params == "baked"  ? Parameters::Baked
                        : flags.params == "spec" ? Parameters::Spec
                                                 : Parameters::Uniform;
-  options.binding = flags.binding == "sets" ? BindingModel::Sets : BindingModel::Bindless;
+  options.binding = flags.binding == "sets"       ? BindingModel::Sets
+                    : flags.binding == "bindless" ? BindingModel::Bindless
+                                                  : BindingModel::Arrays;
   options.spirv_route = flags.spirv_from == "direct" ? SpirvRoute::Direct : SpirvRoute::Glslang;
   for (const auto& wrong :
        {parseTargets(flags.targets, options), parseSwitches(flags.switches, options.switches),

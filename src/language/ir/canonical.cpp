@@ -137,6 +137,16 @@ private:
       number(place);
       if (module_.beside_another && slot.optional) number(slot.binding.flat);
       text(slot.name);
+      if (slot.sampler) {
+        number(slot.sampler->wrap_s);
+        number(slot.sampler->wrap_t);
+        number(slot.sampler->mag);
+        number(slot.sampler->min);
+      }
+      if (!slot.layers.empty()) {
+        text(slot.layers);
+        number(slot.number);
+      }
       if (slot.array.empty()) continue;
       text(slot.array);
       number(slot.number);

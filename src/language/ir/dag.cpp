@@ -386,6 +386,11 @@ void Dag::setInputField(ValueId id, uint32_t field) {
   input_keys_[values_[id].payload] = keyOf(input);
 }
 
+void Dag::setInputType(ValueId id, Type type) {
+  inputs_[values_[id].payload].type = type;
+  values_[id].type = type;
+}
+
 ValueId Dag::input(Input input) {
   const uint64_t key = keyOf(input);
   for (uint32_t i = 0; i < inputs_.size(); ++i) {

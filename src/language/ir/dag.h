@@ -256,6 +256,8 @@ public:
   void substitute(ValueId id, std::span<const ValueId> operands);
   /// Renumbers an input: its index in the module's table of that kind.
   void setInputField(ValueId id, uint32_t field);
+  /// Makes a texture of an input another type of texture. Who reads it must be made anew.
+  void setInputType(ValueId id, Type type);
 
 private:
   friend class Simplifier;

@@ -110,6 +110,23 @@ struct Parameter {
   std::string constant_name{};  ///< what the code calls it then
 };
 
+/// How a texture is looked up, in glTF's words and their order.
+struct Sampler {
+  enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
+  enum class Filter : uint8_t {
+    Open,
+    Nearest,
+    Linear,
+    NearestMipmapNearest,
+    LinearMipmapNearest,
+    NearestMipmapLinear,
+    LinearMipmapLinear
+  };
+  Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
+  Filter mag = Filter::Linear, min = Filter::LinearMipmapLinear;
+  bool operator==(const Sampler&) const = default;
+};
+
 struct TextureSlot {
   std::string name;  ///< "coat_roughness_texture"
   Type type = Type::Texture2D;
@@ -122,7 +139,14 @@ struct TextureSlot {
   Binding binding{};                  ///< an environment's by the template, a material's by the bind pass
   Stages others{};                    ///< as a block's
   std::string array{};  ///< not empty: it is one of this array, at the number that the material's record has
-  uint32_t number = 0;  ///< then: that field of the record
+  uint32_t number = 0;  ///< then: that field of the record; with `layers`, of the material's block
+  /// What all materials of the shader look it up by, where the options ask for it and the file says it;
+  /// behind the pipeline it is a static sampler.
+  std::optional<Sampler> sampler{};
+  std::string layers{};  ///< not empty: it is a layer of the texture of this name, at the number in the block
+
+  /// What the texts call what is bound for it, but an array's.
+  const std::string& boundName() const { return layers.empty() ? name : layers; }
 };
 
 struct Attribute {

@@ -27,11 +27,19 @@ using Channels = std::array<int, 4>;
 inline constexpr Channels kOwnChannels{0, 1, 2, 3};
 inline constexpr int kUnused = -1;
 
+/// How a texture is looked up, in OpenGL's numbers as glTF has them.
+struct Sampler {
+  int wrapS = 10497, wrapT = 10497;  ///< 33071 clamp, 33648 mirror, 10497 repeat
+  int magFilter = 0,
+      minFilter = 0;  ///< 9728 nearest, 9729 linear, and minFilter's mipmaps; 0: the file leaves it open
+};
+
 /// A textureInfo: which texture, which UV set (after KHR_texture_transform's override), which transform.
 struct TextureInfo {
-  int texture = -1;                           ///< index into the file's textures
-  int image = -1;                             ///< index into the file's images; -1 when the texture has none
-  Channels channels = kOwnChannels;           ///< what shaders take of the image: Texture::channels()
+  int texture = -1;                  ///< index into the file's textures
+  int image = -1;                    ///< index into the file's images; -1 when the texture has none
+  Channels channels = kOwnChannels;  ///< what shaders take of the image: Texture::channels()
+  Sampler sampler{};
   int texCoord = 0;                           ///< 0 to 3
   std::optional<TextureTransform> transform;  ///< present when the file has the extension, even if identity
   std::string pointer;                        ///< JSON pointer of this textureInfo
@@ -102,8 +110,8 @@ struct Primitive {
   std::vector<std::vector<std::string>> targets;  ///< semantics of each morph target, in the file's order
 };
 
-/// A texture's images and its sampler, in OpenGL's numbers as glTF has them.
-struct Texture {
+/// A texture's images and its sampler.
+struct Texture : Sampler {
   /// An image that an extension gives in place of `source`.
   struct Source {
     std::string_view extension;  ///< "KHR_texture_basisu"
@@ -116,9 +124,6 @@ struct Texture {
   /// By NV_texture_swizzle: channels of images, any of which may stand for the texture; those of the first
   /// are what shaders take, if they can.
   std::vector<Source> swizzles;
-  int wrapS = 10497, wrapT = 10497;  ///< 33071 clamp, 33648 mirror, 10497 repeat
-  int magFilter = 0,
-      minFilter = 0;  ///< 9728 nearest, 9729 linear, and minFilter's mipmaps; 0: the file leaves it open
   /// What an engine shows that knows the extensions: their image first; -1 when there is none.
   int image() const {
     if (!sources.empty()) return sources[0].image;

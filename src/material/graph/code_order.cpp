@@ -219,6 +219,12 @@ private:
     if (!place) return;
     word(ir::typeName(graph_.textures[*place].type));
     word(graph_.textures[*place].srgb ? "srgb" : "");
+    const std::optional<ir::Sampler>& sampler = graph_.textures[*place].sampler;
+    if (!sampler) return;
+    for (const ir::Sampler::Wrap wrap : {sampler->wrap_s, sampler->wrap_t})
+      word(kWrapWords[static_cast<size_t>(wrap)]);
+    for (const ir::Sampler::Filter filter : {sampler->mag, sampler->min})
+      word(kFilterWords[static_cast<size_t>(filter)]);
   }
   void from(const GivenRef& ref) { word("given"), word(ref.name); }
   void from(const AttributeRef& ref) { word("attribute"), word(ref.name), word(ir::typeName(ref.type)); }

@@ -104,6 +104,7 @@ Texture bare(const Texture& texture) {
   slot.name = texture.name;
   slot.type = texture.type;
   slot.srgb = texture.srgb;
+  slot.sampler = texture.sampler;
   return slot;
 }
 

@@ -184,6 +184,16 @@ std::string_view tileToken(std::string_view file);
 /// The file of a tile, counted from 0 on: 1001 and u1_v1, 1002 and u2_v1.
 std::string tileFile(std::string file, size_t tile);
 
+/// In the graph's text, by their numbers.
+inline constexpr std::array<std::string_view, 3> kWrapWords = {"repeat", "clamp", "mirror"};
+inline constexpr std::array<std::string_view, 7> kFilterWords = {"open",
+                                                                 "nearest",
+                                                                 "linear",
+                                                                 "nearest-mipmap-nearest",
+                                                                 "linear-mipmap-nearest",
+                                                                 "nearest-mipmap-linear",
+                                                                 "linear-mipmap-linear"};
+
 struct Texture : ir::TextureSlot {
   std::string file{};          ///< below the folder of the graph's; empty for glTF's texture
   bool own_sampler = false;    ///< of glTF's texture: what follows counts, and not its sampler

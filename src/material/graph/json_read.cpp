@@ -436,7 +436,6 @@ void Reader::textureIndex(const Json& json, const Path& path, Texture& texture) 
 
 /// How an image is looked up.
 void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
-  constexpr std::array<std::string_view, 3> kWraps = {"repeat", "clamp", "mirror"};
   constexpr std::array<std::string_view, 2> kFilters = {"linear", "nearest"};
   const auto word = [&](const Json& value, const Path& at, std::string_view name, Keys words) -> size_t {
     const std::string expected = listOf(words, "or");
@@ -458,19 +457,32 @@ void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
                     "it is a word for both directions, or an array of the words for s and t");
     }
     for (size_t i = 0; i < 2 && !(wrap->is_array() && wrap->size() != 2); ++i) {
-      texture.wrap[i] = static_cast<Wrap>(wrap->is_array() ? word((*wrap)[i], Path(here, i), "wrap", kWraps)
-                                                           : word(*wrap, here, "wrap", kWraps));
+      texture.wrap[i] =
+          static_cast<Wrap>(wrap->is_array() ? word((*wrap)[i], Path(here, i), "wrap", kWrapWords)
+                                             : word(*wrap, here, "wrap", kWrapWords));
       if (!wrap->is_array()) texture.wrap[1] = texture.wrap[0];
       if (!wrap->is_array()) break;
     }
   }
   if (const Json* filter = json::member(json, "filter"))
     texture.nearest = word(*filter, Path(path, "filter"), "filter", kFilters) == 1;
+  const Json* fixed = json::member(json, "sampler");
+  if (fixed == nullptr) return;
+  const Path here(path, "sampler");
+  if (!fixed->is_array() || fixed->size() != 4) {
+    return report_.error("wrong-type", here, "the sampler of a texture is no array of 4",
+                         "it has the wraps of s and t, then the filters that magnify and minify");
+  }
+  ir::Sampler& to = texture.sampler.emplace();
+  to.wrap_s = static_cast<ir::Sampler::Wrap>(word((*fixed)[0], Path(here, 0), "wrap", kWrapWords));
+  to.wrap_t = static_cast<ir::Sampler::Wrap>(word((*fixed)[1], Path(here, 1), "wrap", kWrapWords));
+  to.mag = static_cast<ir::Sampler::Filter>(word((*fixed)[2], Path(here, 2), "filter", kFilterWords));
+  to.min = static_cast<ir::Sampler::Filter>(word((*fixed)[3], Path(here, 3), "filter", kFilterWords));
 }
 
 void Reader::texture(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 10> kKeys = {"type",   "srgb",    "texture", "file", "wrap",
-                                                      "filter", "default", "pointer", "also", "ui"};
+  constexpr std::array<std::string_view, 11> kKeys = {
+      "type", "srgb", "texture", "file", "wrap", "filter", "sampler", "default", "pointer", "also", "ui"};
   if (!object(json, path, "a texture", kKeys)) return;
   Texture slot;
   slot.name = name;

@@ -121,8 +121,9 @@ std::string parameter(const Parameter& parameter) {
 }
 
 std::string texture(const Texture& slot) {
-  constexpr std::string_view kWraps[] = {"\"repeat\"", "\"clamp\"", "\"mirror\""};
-  const auto wrap = [&](size_t i) { return kWraps[static_cast<size_t>(slot.wrap[i])]; };
+  const auto wrap = [&](size_t i) {
+    return fmt::format("\"{}\"", kWrapWords[static_cast<size_t>(slot.wrap[i])]);
+  };
   std::string text = fmt::format("{{\"type\": \"{}\", \"srgb\": {}", ir::typeName(slot.type), slot.srgb);
   if (slot.texture != -1) text += fmt::format(", \"texture\": {}", slot.texture);
   if (!slot.file.empty()) text += ", " + member("file", json::quotedText(slot.file));
@@ -131,6 +132,12 @@ std::string texture(const Texture& slot) {
   else if (slot.wrap[0] != Wrap::Repeat || slot.own_sampler)
     text += fmt::format(", \"wrap\": {}", wrap(0));
   if (slot.nearest) text += ", \"filter\": \"nearest\"";
+  if (slot.sampler) {
+    const auto word = [](const auto& words, auto which) { return words[static_cast<size_t>(which)]; };
+    text += fmt::format(R"(, "sampler": ["{}", "{}", "{}", "{}"])", word(kWrapWords, slot.sampler->wrap_s),
+                        word(kWrapWords, slot.sampler->wrap_t), word(kFilterWords, slot.sampler->mag),
+                        word(kFilterWords, slot.sampler->min));
+  }
   if (slot.color) text += ", " + member("default", value(ir::Type::Vec4, *slot.color));
   if (!slot.pointer.empty()) text += ", " + member("pointer", json::quotedText(slot.pointer));
   if (!slot.also.empty()) {

@@ -250,6 +250,7 @@ void MaterialReader::texture(const PropertyDecl& decl, const Json& json, const P
     const gltf::Texture& of = file_.scene.textures[static_cast<size_t>(info.texture)];
     info.image = of.image();
     info.channels = of.channels();
+    info.sampler = of;
     unusedChannels(decl, info, path);
   }
   if (used) material_.textures.push_back({schema_.indexOf(decl), std::move(info)});

@@ -143,9 +143,10 @@ private:
 
   /// The textures of an array have one variable.
   uint32_t textureOrArray(const ir::TextureSlot& slot) {
-    if (slot.array.empty()) return texture(slot);
-    uint32_t& known = texture_arrays_[slot.array];
+    if (slot.array.empty() && slot.layers.empty()) return texture(slot);
+    uint32_t& known = texture_arrays_[slot.array.empty() ? slot.layers : slot.array];
     if (known != 0) return known;
+    if (slot.array.empty()) return known = texture(slot);
     globals_.asksForArrays(array_length_ == 0);
     const auto storage = spv::StorageClassUniformConstant;
     const uint32_t element = globals_.type(slot.type);
@@ -163,7 +164,7 @@ private:
 
   uint32_t texture(const ir::TextureSlot& slot) {
     const auto storage = spv::StorageClassUniformConstant;
-    const uint32_t id = variable(storage, globals_.pointer(storage, kindOf(slot.type)), slot.name);
+    const uint32_t id = variable(storage, globals_.pointer(storage, kindOf(slot.type)), slot.boundName());
     bindAt(id, slot.binding);
     return id;
   }
