@@ -1,5 +1,8 @@
 #include "manifest/text.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "manifest/members.h"
 #include "targets/target.h"
 
@@ -122,6 +125,25 @@ std::string_view dimensionOf(std::string_view type) {
   return type == ir::typeName(ir::Type::Texture3D) ? "3d" : "2d";
 }
 
+/// What textures are bound: of an array one for all that are taken from it, with the
+/// array's name and the stages of all, since a layout has one entry for a place.
+std::vector<ReflectedTexture> boundTextures(const Reflection& of) {
+  std::vector<ReflectedTexture> bound;
+  for (const ReflectedTexture& texture : of.textures) {
+    const auto same = std::find_if(bound.begin(), bound.end(), [&](const ReflectedTexture& other) {
+      return !texture.array.empty() && other.array == texture.array;
+    });
+    if (same != bound.end()) {
+      same->vertex = same->vertex || texture.vertex;
+      same->fragment = same->fragment || texture.fragment;
+      continue;
+    }
+    ReflectedTexture& added = bound.emplace_back(texture);
+    if (!added.array.empty()) added.name = added.array;
+  }
+  return bound;
+}
+
 /// "bindings": what createBindGroupLayout() wants, in its words, with the group of each; "limits": what
 /// requestDevice() must be asked for beyond WebGPU's defaults, with colour attachments of `rgba16float`.
 void writeWebGpu(const Reflection& of, JsonText& to) {
@@ -142,7 +164,7 @@ void writeWebGpu(const Reflection& of, JsonText& to) {
       to.key("minBindingSize").integer(std::max(block.array, 1U) * block.size).endObject();
     });
   }
-  for (const ReflectedTexture& texture : of.textures) {
+  for (const ReflectedTexture& texture : boundTextures(of)) {
     const bool compares = texture.type == ir::typeName(ir::Type::Texture2DShadow);
     // An object's textures hold numbers in 32-bit floats, which WebGPU does not filter.
     const bool numbers = texture.role == TextureRole::Object;
