@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include "device.h"
 #include "lacquer.h"
 #include "lacquer/contract.h"
+#include "lacquer/manifest.h"
 #include "lacquer/vulkan.h"
 #include "support/cases.h"
 
@@ -566,6 +568,47 @@ TEST(Bindless, recordsAreWhatIsPacked) {
     EXPECT_GE(texture.number, used) << texture.name;
     EXPECT_LT(texture.number, record->size) << texture.name;
   }
+}
+
+/// A layout has one entry for a place, though many textures are taken from the array there; and a manifest
+/// that is read has the places of all of them.
+TEST(Bindless, layoutsOfWebGpuHaveEachPlaceOnce) {
+  Options options;
+  options.binding = BindingModel::Bindless;
+  options.targets = {Target::Wgsl};
+  options.validate = false;
+  Messages messages;
+  const std::string path = (sourceFolder() / "examples/car_paint.gltf").string();
+  const Contract contract = lacquer::contract(Scene::load(path, options, messages), {}, options, messages);
+  ASSERT_FALSE(contract.shaders.empty()) << (messages.empty() ? "" : messages[0].text);
+  const std::string text = manifestJson(contract, path);
+  const Json manifest = Json::parse(text);
+  size_t arrays = 0;
+  for (const Json& shader : manifest["shaders"]) {
+    std::map<std::pair<int, int>, std::string> places;
+    for (const Json& entry : shader["webgpu"]["bindings"]) {
+      const auto [at, added] =
+          places.emplace(std::pair<int, int>(entry["group"], entry["binding"]), entry["name"]);
+      EXPECT_TRUE(added) << entry.dump() << " and " << at->second;
+      arrays += at->second == "textures" ? 1 : 0;
+    }
+  }
+  EXPECT_GT(arrays, 0U);
+
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "lacquer_bindless_layouts";
+  std::filesystem::create_directories(folder);
+  std::ofstream((folder / "manifest.json").string(), std::ios::binary) << text;
+  const std::optional<Manifest> read = readManifest((folder / "manifest.json").string(), options, messages);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(read.has_value());
+  for (const ManifestShader& one : read->shaders) {
+    for (const ReflectedTexture& texture : one.reflection.textures) {
+      if (texture.array != "textures") continue;
+      EXPECT_EQ(texture.wgsl.binding, 2U) << texture.name;
+      EXPECT_EQ(texture.wgsl.sampler, 3U) << texture.name;
+    }
+  }
+  EXPECT_EQ(Json::parse(manifestJson(*read)), manifest);
 }
 
 /// What is proved of the operations does not depend on where numbers come from.

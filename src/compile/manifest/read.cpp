@@ -180,14 +180,16 @@ public:
       BoundResource* bound = find(name);
       ReflectedTexture* sampled = bound == nullptr ? bySampler(name) : nullptr;
       if (sampled != nullptr) bound = sampled;
+      if (bound == nullptr) bound = byArray(name);
       if (bound == nullptr) return unknown(name, at);
       number(row, "group", at, bound->wgsl.group);
       number(row, "binding", at, sampled != nullptr ? bound->wgsl.sampler : bound->wgsl.binding);
-      stages(row, at, *bound);
+      // Those of an array's entry are the stages of all its textures, not of the first.
+      if (sampled == nullptr ? byArray(name) == nullptr : sampled->array.empty()) stages(row, at, *bound);
     });
-    // The textures of an array have one sampler's name.
+    // The textures of an array have one place.
     for (ReflectedTexture& texture : of_.textures) {
-      if (!texture.array.empty()) texture.wgsl = bySampler(texture.sampler)->wgsl;
+      if (!texture.array.empty()) texture.wgsl = byArray(texture.array)->wgsl;
     }
     const Json* limits = json::member(json, "limits");
     if (limits == nullptr || !limits->is_object())
@@ -205,17 +207,18 @@ public:
     const bool buffers = argued != nullptr && argued->is_boolean() && argued->get<bool>();
     each(json, path, [&](const Json& row, const std::string& name, const Path& at) {
       BoundResource* bound = find(name);
+      if (bound == nullptr) bound = byArray(name);
       if (bound == nullptr) return unknown(name, at);
       const bool block = json::member(row, buffers ? "sampler_id" : "sampler") == nullptr;
       MslPlace& to = buffers ? bound->msl_argument : bound->msl;
       if (buffers) number(row, "argument_buffer", at, to.argument_buffer);
       number(row, buffers ? "id" : block ? "buffer" : "texture", at, to.index);
       if (!block) number(row, buffers ? "sampler_id" : "sampler", at, to.sampler);
-      stages(row, at, *bound);
+      if (byArray(name) == nullptr) stages(row, at, *bound);
     });
     for (ReflectedTexture& texture : of_.textures) {
-      if (!texture.layered) continue;
-      const ReflectedTexture& first = *bySampler(texture.sampler);
+      if (!texture.layered || texture.array.empty()) continue;
+      const ReflectedTexture& first = *byArray(texture.array);
       texture.msl = first.msl, texture.msl_argument = first.msl_argument;
     }
     return buffers;
@@ -243,9 +246,16 @@ private:
       if (block.name == name) return &block;
     }
     for (ReflectedTexture& texture : of_.textures) {
-      if ((texture.layered ? texture.array : texture.name) == name) return &texture;
+      if (texture.name == name) return &texture;
     }
     return nullptr;
+  }
+
+  /// The first of an array's textures.
+  ReflectedTexture* byArray(const std::string& array) {
+    const auto it = std::find_if(of_.textures.begin(), of_.textures.end(),
+                                 [&](const ReflectedTexture& texture) { return texture.array == array; });
+    return it == of_.textures.end() || array.empty() ? nullptr : &*it;
   }
 
   ReflectedTexture* bySampler(const std::string& name) {

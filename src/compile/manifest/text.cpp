@@ -1,5 +1,8 @@
 #include "manifest/text.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "manifest/members.h"
 #include "targets/target.h"
 
@@ -122,16 +125,25 @@ std::string_view dimensionOf(std::string_view type) {
   return type == ir::typeName(ir::Type::Texture3D) ? "3d" : "2d";
 }
 
-/// Whether an earlier texture has the place: the layers of an array are bound once.
-bool isBoundBefore(const Reflection& of, const ReflectedTexture& texture) {
-  if (!texture.layered) return false;
-  const auto first = std::find_if(of.textures.begin(), of.textures.end(), [&](const ReflectedTexture& one) {
-    return one.layered && one.array == texture.array;
-  });
-  return &*first != &texture;
-}
-const std::string& boundName(const ReflectedTexture& texture) {
-  return texture.layered ? texture.array : texture.name;
+/// What textures are bound: of an array one for all that are taken from it, with the array's name and the
+/// stages of all, since a layout has one entry for a place. `numbered`: of arrays whose textures have numbers
+/// as well as of those with layers.
+std::vector<ReflectedTexture> boundTextures(const Reflection& of, bool numbered) {
+  std::vector<ReflectedTexture> bound;
+  for (const ReflectedTexture& texture : of.textures) {
+    const bool shared = texture.layered || (numbered && !texture.array.empty());
+    const auto same = std::find_if(bound.begin(), bound.end(), [&](const ReflectedTexture& other) {
+      return shared && other.array == texture.array;
+    });
+    if (same != bound.end()) {
+      same->vertex = same->vertex || texture.vertex;
+      same->fragment = same->fragment || texture.fragment;
+      continue;
+    }
+    ReflectedTexture& added = bound.emplace_back(texture);
+    if (shared) added.name = added.array;
+  }
+  return bound;
 }
 
 /// "bindings": what createBindGroupLayout() wants, in its words, with the group of each; "limits": what
@@ -154,12 +166,11 @@ void writeWebGpu(const Reflection& of, JsonText& to) {
       to.key("minBindingSize").integer(std::max(block.array, 1U) * block.size).endObject();
     });
   }
-  for (const ReflectedTexture& texture : of.textures) {
-    if (isBoundBefore(of, texture)) continue;
+  for (const ReflectedTexture& texture : boundTextures(of, true)) {
     const bool compares = texture.type == ir::typeName(ir::Type::Texture2DShadow);
     // An object's textures hold numbers in 32-bit floats, which WebGPU does not filter.
     const bool numbers = texture.role == TextureRole::Object;
-    row(texture, boundName(texture), texture.wgsl.binding, [&] {
+    row(texture, texture.name, texture.wgsl.binding, [&] {
       to.key("texture").beginObject();
       to.key("sampleType").string(compares ? "depth" : numbers ? "unfilterable-float" : "float");
       to.key("viewDimension").string(dimensionOf(texture.type)).endObject();
@@ -193,9 +204,7 @@ void writeMetal(const Reflection& of, bool argument_buffers, JsonText& to) {
         [] {});
   };
   for (const UniformBlock& block : of.blocks) row(block, block.name, true);
-  for (const ReflectedTexture& texture : of.textures) {
-    if (!isBoundBefore(of, texture)) row(texture, boundName(texture), false);
-  }
+  for (const ReflectedTexture& texture : boundTextures(of, false)) row(texture, texture.name, false);
   to.endArray().endObject();
 }
 
