@@ -191,8 +191,10 @@ struct Plan {
 Report plan(const Plan& plan, const Strings& files, const Strings& materials, const std::string& folder,
             const Options& options, Messages& messages);
 /// Merges manifests and shards into `folder`/manifest.json: files in the order given, shaders by id. False on
-/// an error, such as a shader that two of them describe differently.
-bool merge(const Strings& shards, const std::string& folder, Messages& messages);
+/// an error, such as a shader that two of them describe differently. `packed`: in its place this file is
+/// written, as pack() would, with the shaders that lie in the folder.
+bool merge(const Strings& shards, const std::string& folder, Messages& messages,
+           const std::string& packed = {});
 /// Packs `folder`/manifest.json and the shaders that it names, of some targets or of all that there are, into
 /// one file, which an engine reads in place (lacquer/packed.h). Of the options, `limits` and `sync`. False on
 /// an error, such as "no-such-target" for one that the folder was not made with.

@@ -183,6 +183,7 @@ struct Options {
   uint64_t cache_size = uint64_t{1} << 30;  ///< bytes that the cache may take
   std::string
       depfile;  ///< of generate(), generateGraphs(): a file for Make and Ninja, what the manifest depends on
+  std::string packed;     ///< of generate(): in place of manifest.json its packed form, written here
   std::string shard;      ///< of the same: the shaders' part of the manifest alone, written here, for merge()
   Strings limits;         ///< "images=1G", each: what an input may be at most (docs/security.md)
   Strings allow;          ///< folders in which images may lie, beside the glTF file's own, and a case's file

@@ -2,6 +2,8 @@
 // lead its reader out of it.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <cstring>
 #include <fstream>
 
@@ -247,6 +249,79 @@ TEST(Packed, hasTheTargetsThatAreNamed) {
   EXPECT_FALSE(pack((folder / "none").string(), {}, path, {}, messages));
   EXPECT_EQ(errorsOf(messages), "file-unreadable");
   EXPECT_EQ(readBytes(path), bytes);
+}
+
+/// The shaders' files below a folder.
+std::set<std::string> shadersIn(const std::filesystem::path& folder) {
+  std::set<std::string> all;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) all.insert(entry.path().lexically_relative(folder).generic_string());
+  }
+  return all;
+}
+
+TEST(Packed, isWrittenInPlaceOfTheManifest) {
+  const std::filesystem::path root = emptyFolder();
+  const std::string coat = std::string(LACQUER_EXAMPLES) + "/coat.gltf";
+  const std::string core = std::string(LACQUER_EXAMPLES) + "/core.gltf";
+  Options options = forPacking();
+  Messages messages;
+  const auto packedBy = [&](const Strings& files, const std::string& name) {
+    const std::string folder = (root / name).string(), file = (root / (name + ".lqpm")).string();
+    EXPECT_TRUE(generate(files, {}, folder, options, messages).ok);
+    EXPECT_TRUE(pack(folder, {}, file, options, messages));
+    return readBytes(file);
+  };
+  const std::string both = packedBy({coat, core}, "both"), one = packedBy({coat}, "one");
+  std::set<std::string> of_one = shadersIn(root / "one");
+  ASSERT_EQ(of_one.erase("manifest.json"), 1U);
+  options.packed = (root / "all.lqpm").string();
+  const auto run = [&](const Strings& files, const std::string& folder) {
+    return generate(files, {}, (root / folder).string(), options, messages).ok;
+  };
+  ASSERT_TRUE(run({coat, core}, "out"));
+  EXPECT_TRUE(readBytes(options.packed) == both);
+  EXPECT_FALSE(std::filesystem::exists(root / "out/manifest.json"));
+  // What the last run needed and this one does not goes, whichever form said it.
+  ASSERT_TRUE(run({coat}, "out"));
+  EXPECT_TRUE(readBytes(options.packed) == one);
+  EXPECT_EQ(shadersIn(root / "out"), of_one);
+  ASSERT_TRUE(run({coat}, "both"));
+  EXPECT_EQ(shadersIn(root / "both"), of_one);
+  // A run that fails leaves what was there.
+  EXPECT_FALSE(run({coat, (root / "none.gltf").string()}, "out"));
+  EXPECT_TRUE(readBytes(options.packed) == one);
+}
+
+TEST(Packed, isWrittenByAMerge) {
+  const std::filesystem::path root = emptyFolder();
+  const Options options = forPacking();
+  Messages messages;
+  Strings manifests;
+  for (const std::string name : {"coat", "core"}) {
+    const std::filesystem::path folder = root / name;
+    ASSERT_TRUE(generate({std::string(LACQUER_EXAMPLES) + "/" + name + ".gltf"}, {}, folder.string(), options,
+                         messages)
+                    .ok);
+    std::filesystem::copy(
+        folder, root / "all",
+        std::filesystem::copy_options::recursive | std::filesystem::copy_options::skip_existing);
+    manifests.push_back((folder / "manifest.json").string());
+  }
+  const std::string folder = (root / "all").string(), file = (root / "merged.lqpm").string();
+  std::filesystem::remove(root / "all/manifest.json");
+  ASSERT_TRUE(merge(manifests, folder, messages, file)) << messages.back().text;
+  EXPECT_FALSE(std::filesystem::exists(root / "all/manifest.json"));
+  ASSERT_TRUE(merge(manifests, folder, messages));
+  const std::string packed = (root / "packed.lqpm").string();
+  ASSERT_TRUE(pack(folder, {}, packed, options, messages));
+  EXPECT_TRUE(readBytes(file) == readBytes(packed));
+  // A shader whose code is not in the folder is said, and nothing is written.
+  std::filesystem::remove_all(root / "all/glsl");
+  messages.clear();
+  EXPECT_FALSE(merge(manifests, folder, messages, file));
+  EXPECT_EQ(errorsOf(messages), "file-unreadable");
+  EXPECT_TRUE(readBytes(file) == readBytes(packed));
 }
 
 /// A manifest may be anybody's.

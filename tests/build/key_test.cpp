@@ -73,6 +73,7 @@ const std::vector<Row>& rows() {
       {"weights", Decides::Run, [](Options& o) { o.weights = "weights.json"; }},
       {"programs_report", Decides::Run, [](Options& o) { o.programs_report = "programs.md"; }},
       {"properties", Decides::Graph, [](Options& o) { o.properties = true; }},
+      {"packed", Decides::Run, [](Options& o) { o.packed = "all.lqpm"; }},
       {"pipelines", Decides::Run, [](Options& o) { o.pipelines = "pipelines.json"; }},
       {"programs_model", Decides::Run, [](Options& o) { o.programs_model = true; }},
   };

@@ -241,6 +241,19 @@ TEST_F(Receipt, CoversSharedPrograms) {
   EXPECT_FALSE(quick());
 }
 
+/// What is written in place of the manifest is an output as that is.
+TEST_F(Receipt, CoversThePackedFile) {
+  const auto quick = [&] { return run("out", {"--packed", "all.lqpm"}).quick; };
+  EXPECT_FALSE(quick());
+  EXPECT_TRUE(quick());
+  EXPECT_FALSE(fs::exists(folder_ / "out/manifest.json"));
+  const std::string before = readText(folder_ / "all.lqpm");
+  forge(folder_ / "all.lqpm");
+  EXPECT_FALSE(quick());
+  EXPECT_EQ(readText(folder_ / "all.lqpm"), before);
+  EXPECT_TRUE(quick());
+}
+
 /// A driver's word counts as long as it is the same driver.
 TEST_F(Receipt, KnowsTheDriverThatIsAsked) {
   const fs::path icd = folder_ / "share" / "vulkan" / "icd.d";

@@ -191,7 +191,7 @@ TEST(Places, ofTheRunAreItsOwn) {
   const std::string temporary = ".lacquer-tmp/lacquer-0000000000000000-0.tmp";
   const auto all = [&] {
     for (const std::string& name : {std::string("out/.lacquer-tmp"), "out/" + temporary}) {
-      for (const char* option : {"--depfile", "--shard", "--pipelines"})
+      for (const char* option : {"--depfile", "--packed", "--shard", "--pipelines"})
         refused(gen, {option, name}, "output folder's");
       refused(plan, {"--json", name}, "output folder's");
     }

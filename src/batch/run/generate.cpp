@@ -2,6 +2,7 @@
 
 #include "manifest/stale.h"
 #include "manifest/text.h"
+#include "run/pack.h"
 #include "run/pipelines.h"
 #include "run/run.h"
 #include "setting/messages.h"
@@ -64,6 +65,15 @@ Strings shaderFiles(const Report& report) {
   return paths;
 }
 
+/// What an earlier run has left in the folder, by its manifest or by what was written in its place.
+Strings leftShaders(const std::string& manifest, const Options& options) {
+  Strings all = listedShaders(manifest);
+  if (options.packed.empty()) return all;
+  const Strings packed = packedShaders(options.packed);
+  all.insert(all.end(), packed.begin(), packed.end());
+  return all;
+}
+
 /// Reads the inputs, makes what is needed and writes the manifest.
 Report generateWith(const Inputs& inputs, const std::string& folder, const Options& options,
                     Messages& messages, const Progress& progress) {
@@ -75,7 +85,9 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   }
   if (!run.prepare()) return run.finish();
   const bool shard = !options.shard.empty();
-  const std::string path = shard ? options.shard : folder + "/manifest.json";
+  const bool packed = !options.packed.empty();
+  const std::string manifest_path = folder + "/manifest.json";
+  const std::string path = shard ? options.shard : packed ? options.packed : manifest_path;
   Strings outputs{path};
   Result<std::string> depfile;
   if (!options.depfile.empty()) {
@@ -88,7 +100,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   }
   Strings named;
   for (const std::string& one :
-       {options.shard, options.depfile, options.programs_report, options.pipelines}) {
+       {options.packed, options.shard, options.depfile, options.programs_report, options.pipelines}) {
     if (!one.empty()) named.push_back(one);
   }
   if (!run.mayWrite(outputs) || !run.mayName(named, folder) || !depfile) return run.finish();
@@ -107,12 +119,15 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     return run.finish();
   }
   const Scratch scratch(folder);
-  const Strings earlier = shard ? Strings() : listedShaders(path);
-  ReplacingFile written_to(path, {shard ? nullptr : &scratch, options.sync});
+  const Strings earlier = shard ? Strings() : leftShaders(manifest_path, options);
+  std::optional<ReplacingFile> written_to;
+  if (!packed) written_to.emplace(path, Writing{shard ? nullptr : &scratch, options.sync});
   OutputKey content;
-  manifest::Writer manifest([&](std::string_view text) {
-    written_to.append(text);
-    if (receipt) content.append(text);
+  std::string text;  // of the manifest that is packed
+  manifest::Writer manifest([&](std::string_view piece) {
+    if (packed) return void(text += piece);
+    written_to->append(piece);
+    if (receipt) content.append(piece);
   });
   Pipelines pipelines;
   run.read(inputs.files, inputs.kind, inputs.materials, [&](FileResult& file) {
@@ -123,15 +138,26 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
                 [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); })) {
     return run.finish();
   }
-  // A shard stands for its shader: without the one there is not the other.
-  if (!shard || run.result().ok) {
-    manifest.finish();
-    const Result<bool> written = written_to.finish();
+  Receipt* const notes = receipt ? &*receipt : nullptr;
+  manifest.finish();
+  // A shard stands for its shader, a packed file for all: without the one there is not the other.
+  if (packed && run.result().ok) {
+    const Result<std::string> bytes = packedOf(text, folder, path);
+    if (bytes)
+      run.write(path, *bytes, notes);
+    else
+      run.wrote(tl::make_unexpected(bytes.error()));
+    if (run.result().ok) {
+      removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
+      removeManifest(manifest_path);
+    }
+  }
+  if (!packed && (!shard || run.result().ok)) {
+    const Result<bool> written = written_to->finish();
     run.wrote(written);
     if (receipt) receipt->wrote(path, content.finish());
     if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
   }
-  Receipt* const notes = receipt ? &*receipt : nullptr;
   run.writeProgramsReport(notes);
   if (!options.pipelines.empty() && !shard) run.write(options.pipelines, pipelines.text(), notes);
   if (!options.depfile.empty()) {

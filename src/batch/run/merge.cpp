@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "manifest/read.h"
 #include "manifest/text.h"
 #include "run/named_shaders.h"
+#include "run/pack.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "support/file.h"
@@ -93,12 +95,12 @@ Diagnostics absent(const Merged& merged) {
 }
 
 /// Nothing is written, and no folder made, before all that is read is known to be good.
-Result<bool> mergeInto(const std::string& folder, const Strings& shards) {
+Result<bool> mergeInto(const std::string& folder, const Strings& shards, const std::string& packed) {
   Result<void> good = hasPath("the output folder", folder);
   for (size_t i = 0; i < shards.size() && good; ++i) good = hasPath("a shard", shards[i]);
   if (good) good = hasPlace(folder);
   if (!good) return tl::make_unexpected(std::move(good.error()));
-  const std::string path = folder + "/manifest.json";
+  const std::string path = packed.empty() ? folder + "/manifest.json" : packed;
   if (Diagnostics wrong = clashes(shards, {path}); !wrong.empty())
     return tl::make_unexpected(std::move(wrong));
   Merged merged;
@@ -107,20 +109,30 @@ Result<bool> mergeInto(const std::string& folder, const Strings& shards) {
     if (!good) return tl::make_unexpected(std::move(good.error()));
   }
   if (Diagnostics wrong = absent(merged); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  const auto write = [&](const std::function<void(std::string_view)>& to) {
+    manifest::Writer writer(to);
+    for (const std::string& file : merged.files) writer.file(file);
+    for (const auto& [id, entry] : merged.shaders) writer.shader(id, entry.first);
+    writer.finish();
+  };
+  if (!packed.empty()) {
+    std::string text;
+    write([&](std::string_view piece) { text += piece; });
+    const Result<std::string> bytes = packedOf(text, folder, packed);
+    if (!bytes) return tl::make_unexpected(bytes.error());
+    return writeFile(packed, *bytes, {nullptr, true});
+  }
   if (Result<bool> usable = makeFolder(folder); !usable) return usable;
   const Scratch scratch(folder);
   ReplacingFile to(path, {&scratch});
-  manifest::Writer writer([&](std::string_view text) { to.append(text); });
-  for (const std::string& file : merged.files) writer.file(file);
-  for (const auto& [id, entry] : merged.shaders) writer.shader(id, entry.first);
-  writer.finish();
+  write([&](std::string_view piece) { to.append(piece); });
   return to.finish();
 }
 
 }  // namespace
 
-bool merge(const Strings& shards, const std::string& folder, Messages& messages) {
-  const Result<bool> written = mergeInto(folder, shards);
+bool merge(const Strings& shards, const std::string& folder, Messages& messages, const std::string& packed) {
+  const Result<bool> written = mergeInto(folder, shards, packed);
   if (!written) report(written.error(), {}, messages);
   return written.has_value();
 }

@@ -1,10 +1,13 @@
+#include "run/pack.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <deque>
 #include <set>
 
-#include "lacquer/manifest.h"
+#include "lacquer/packed.h"
+#include "manifest/read.h"
 #include "run/named_shaders.h"
 #include "run/packed.h"
 #include "setting/messages.h"
@@ -109,21 +112,57 @@ Result<bool> packInto(const std::string& folder, const std::vector<Target>& targ
   if (!manifest->levels.empty())
     return fail("unknown-property", {path, 0, 0, "/levels"}, "levels of detail are not packed",
                 "pack what `lacquer gen` wrote");
-  Packing packing(folder, targets, limitsOf(options).value_or(Limits{}));
-  good = packing.read(*manifest);
-  if (!good) return tl::make_unexpected(std::move(good.error()));
-  Strings inputs = packing.paths();
-  inputs.push_back(path);
-  if (Diagnostics wrong = clashes(inputs, {file}); !wrong.empty())
-    return tl::make_unexpected(std::move(wrong));
-  std::vector<const FileContract*> files;
-  for (const FileContract& one : manifest->files) files.push_back(&one);
-  const Result<std::string> bytes = packedBytes(files, packing.shaders());
+  const Result<std::string> bytes =
+      packedOf(*manifest, folder, targets, file, limitsOf(options).value_or(Limits{}));
   if (!bytes) return tl::make_unexpected(bytes.error());
   return writeFile(file, *bytes, {nullptr, options.sync});
 }
 
 }  // namespace
+
+Result<std::string> packedOf(const Manifest& manifest, const std::string& folder,
+                             const std::vector<Target>& targets, const std::string& file,
+                             const Limits& limits) {
+  Packing packing(folder, targets, limits);
+  if (Result<void> good = packing.read(manifest); !good) return tl::make_unexpected(std::move(good.error()));
+  Strings inputs = packing.paths();
+  inputs.push_back(folder + "/manifest.json");
+  if (Diagnostics wrong = clashes(inputs, {file}); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  std::vector<const FileContract*> files;
+  for (const FileContract& one : manifest.files) files.push_back(&one);
+  return packedBytes(files, packing.shaders());
+}
+
+Result<std::string> packedOf(std::string_view manifest, const std::string& folder, const std::string& file) {
+  Limits limits;  // of what others write: this is our own
+  for (const LimitRow& row : limitTable()) limits.*row.member = row.most;
+  const Result<Manifest> values = manifest::read(manifest, file, limits);
+  if (!values) return tl::make_unexpected(values.error());
+  return packedOf(*values, folder, {}, file, limits);
+}
+
+Strings packedShaders(const std::string& path) {
+  Strings paths;
+  const Result<std::string> bytes = readFile(path);
+  if (!bytes) return paths;
+  lacquer_packed file{};
+  const lacquer_packed_header* top = lacquer_packed_open(&file, bytes->data(), bytes->size());
+  if (top == nullptr) return paths;
+  for (uint32_t i = 0; i < top->shaders.count; ++i) {
+    const auto* shader = LACQUER_PACKED_AT(&file, top->shaders, lacquer_packed_shader, i);
+    const std::string id = shader == nullptr ? "" : lacquer_packed_string(&file, shader->id);
+    if (!isShaderId(id)) continue;
+    for (uint32_t k = 0; k < shader->codes.count; ++k) {
+      const auto* code = LACQUER_PACKED_AT(&file, shader->codes, lacquer_packed_code, k);
+      Target target{};
+      if (code == nullptr || !findTarget(lacquer_packed_string(&file, code->target), target)) continue;
+      const int stage = std::string_view(lacquer_packed_string(&file, code->stage)) == "vertex" ? 0 : 1;
+      paths.push_back(shaderPath(target, id, stage));
+    }
+  }
+  return paths;
+}
 
 bool pack(const std::string& folder, const std::vector<Target>& targets, const std::string& file,
           const Options& options, Messages& messages) {

@@ -185,7 +185,7 @@ bool Receipt::covers(const Options& options) {
 
 /// First those that belong to no shader.
 std::vector<std::string> Receipt::outputs(const Report& report) const {
-  std::vector<std::string> paths{folder_ + "/manifest.json"};
+  std::vector<std::string> paths{options_.packed.empty() ? folder_ + "/manifest.json" : options_.packed};
   for (const std::string& one : {options_.depfile, options_.programs_report, options_.pipelines}) {
     if (!one.empty()) paths.push_back(one);
   }

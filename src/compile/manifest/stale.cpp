@@ -56,4 +56,9 @@ void removeStale(const std::string& folder, const std::vector<std::string>& earl
   }
 }
 
+void removeManifest(const std::string& path) {
+  std::error_code ignored;
+  if (!listedShaders(path).empty()) std::filesystem::remove(path, ignored);
+}
+
 }  // namespace lacquer

@@ -15,4 +15,7 @@ std::vector<std::string> listedShaders(const std::string& path);
 void removeStale(const std::string& folder, const std::vector<std::string>& earlier,
                  const std::vector<std::string>& kept, const std::vector<std::string>& inputs);
 
+/// Removes the manifest at `path`, if it is one of Lacquer's and lists shaders: it was an earlier run's.
+void removeManifest(const std::string& path);
+
 }  // namespace lacquer

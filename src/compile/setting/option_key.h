@@ -27,8 +27,8 @@ void eachOption(const Options& options, Each each) {
                switches, ibl, multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused,
                properties, spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live,
                node_directories, node_texts, materialx_directories, materialx_texts, document_texts, jobs,
-               cache, cache_size, depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs,
-               fallback, weights, programs_report, programs_model, pipelines] = options;
+               cache, cache_size, depfile, packed, shard, limits, allow, cache_key, argument_buffers, sync,
+               programs, fallback, weights, programs_report, programs_model, pipelines] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, as);
   each(Decides::Graph, simplify);
@@ -64,6 +64,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Nothing, cache);
   each(Decides::Nothing, cache_size);
   each(Decides::Run, depfile);
+  each(Decides::Run, packed);
   each(Decides::Run, shard);
   each(Decides::Graph, limits);
   each(Decides::Nothing, allow);

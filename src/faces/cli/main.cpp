@@ -132,8 +132,12 @@ void addGen(CLI::App& verb, Flags& flags) {
   verb.add_option("--depfile", flags.options.depfile,
                   "a file for Make and Ninja: what manifest.json depends on")
       ->check(kNotEmpty);
+  auto* packed = verb.add_option("--packed", flags.options.packed,
+                                 "in place of manifest.json: a file that an engine maps, as of `pack`")
+                     ->check(kNotEmpty);
   verb.add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`")
-      ->check(kNotEmpty);
+      ->check(kNotEmpty)
+      ->excludes(packed);
   verb.add_option("--programs-report", flags.options.programs_report,
                   "a .json, .md or .svg file: what the materials cost with fewer programs")
       ->check(kNotEmpty);
@@ -214,6 +218,9 @@ void addCheck(CLI::App& verb, Flags& flags) {
 void addMerge(CLI::App& verb, Flags& flags) {
   verb.add_option("shards", flags.files, "what gen wrote, in the order of a run over all files")->required();
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
+  verb.add_option("--packed", flags.options.packed,
+                  "in place of manifest.json: the file of `pack`, of the shaders in the folder")
+      ->check(kNotEmpty);
 }
 
 void addPack(CLI::App& verb, Flags& flags) {
@@ -298,7 +305,7 @@ int plan(const Flags& flags) {
 
 int merge(const Flags& flags) {
   Messages messages;
-  const bool merged = lacquer::merge(flags.files, flags.output, messages);
+  const bool merged = lacquer::merge(flags.files, flags.output, messages, flags.options.packed);
   print(messages);
   return merged ? kGood : kFailed;
 }
