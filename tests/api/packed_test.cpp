@@ -2,10 +2,9 @@
 // lead its reader out of it.
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include <cstring>
 #include <fstream>
+#include <set>
 
 #include "inputs.h"
 #include "support/packed_walk.h"
