@@ -157,7 +157,7 @@ Strings packedShaders(const std::string& path) {
       const auto* code = LACQUER_PACKED_AT(&file, shader->codes, lacquer_packed_code, k);
       Target target{};
       if (code == nullptr || !findTarget(lacquer_packed_string(&file, code->target), target)) continue;
-      const int stage = std::string_view(lacquer_packed_string(&file, code->stage)) == "vertex" ? 0 : 1;
+      const int stage = std::string_view(lacquer_packed_string(&file, code->stage)) == "vert" ? 0 : 1;
       paths.push_back(shaderPath(target, id, stage));
     }
   }
