@@ -62,6 +62,11 @@ function(lacquer_module)
           prove schedule setting shader structures support targets texture)
     target_compile_options(lacquer_${folder} PRIVATE -Oz)
   endforeach()
+  # So is that of passes which few materials, or few options, need.
+  foreach(file arrays bindless specialize_lights hoist_vertex prune_loops)
+    set_source_files_properties("${PROJECT_SOURCE_DIR}/src/compile/passes/${file}.cpp" TARGET_DIRECTORY lacquer_passes
+                                PROPERTIES COMPILE_OPTIONS -Oz)
+  endforeach()
   file(GLOB absent CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/web/absent/*.cpp")
   file(GLOB absent_compiler CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/web/absent/compiler/*.cpp")
   add_library(lacquer_absent OBJECT ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp")
