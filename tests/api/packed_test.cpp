@@ -292,6 +292,34 @@ TEST(Packed, isWrittenInPlaceOfTheManifest) {
   EXPECT_TRUE(readBytes(options.packed) == one);
 }
 
+/// What lies in the file's place may be anybody's: a thousand shaders of four thousand million codes each end
+/// the run as soon as none would.
+TEST(Packed, replacesAFileWhoseListsHaveNoEnd) {
+  const std::filesystem::path root = emptyFolder();
+  const std::string coat = std::string(LACQUER_EXAMPLES) + "/coat.gltf";
+  Options options = forPacking();
+  options.packed = (root / "all.lqpm").string();
+  Messages messages;
+  ASSERT_TRUE(generate({coat}, {}, (root / "out").string(), options, messages).ok);
+  const std::string good = readBytes(options.packed);
+  lacquer_packed_header top{};
+  lacquer_packed_shader shader{};
+  std::memcpy(&top, good.data(), sizeof(top));
+  std::memcpy(&shader, good.data() + top.shaders.at, sizeof(shader));
+  shader.codes.count = 0xffffffff;
+  constexpr uint32_t kShaders = 1000;
+  std::string hostile = good;
+  hostile.resize((hostile.size() + 15) / 16 * 16);
+  top.shaders = {static_cast<uint32_t>(hostile.size()), kShaders};
+  for (uint32_t i = 0; i < kShaders; ++i)
+    hostile.append(reinterpret_cast<const char*>(&shader), sizeof(shader));
+  top.size = static_cast<uint32_t>(hostile.size());
+  std::memcpy(hostile.data(), &top, sizeof(top));
+  std::ofstream(options.packed, std::ios::binary) << hostile;
+  EXPECT_TRUE(generate({coat}, {}, (root / "out").string(), options, messages).ok);
+  EXPECT_TRUE(readBytes(options.packed) == good);
+}
+
 TEST(Packed, isWrittenByAMerge) {
   const std::filesystem::path root = emptyFolder();
   const Options options = forPacking();

@@ -65,7 +65,7 @@ Strings shaderFiles(const Report& report) {
   return paths;
 }
 
-/// What an earlier run has left in the folder, by its manifest or by what was written in its place.
+/// The shaders that an earlier run left in the folder, by its manifest or by its packed file.
 Strings leftShaders(const std::string& manifest, const Options& options) {
   Strings all = listedShaders(manifest);
   if (options.packed.empty()) return all;

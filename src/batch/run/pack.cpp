@@ -149,14 +149,18 @@ Strings packedShaders(const std::string& path) {
   lacquer_packed file{};
   const lacquer_packed_header* top = lacquer_packed_open(&file, bytes->data(), bytes->size());
   if (top == nullptr) return paths;
+  // The file may be anybody's: a list that does not lie in it ends at once, whatever its count.
+  const size_t most_codes = 2 * targetNames().size();
   for (uint32_t i = 0; i < top->shaders.count; ++i) {
     const auto* shader = LACQUER_PACKED_AT(&file, top->shaders, lacquer_packed_shader, i);
-    const std::string id = shader == nullptr ? "" : lacquer_packed_string(&file, shader->id);
+    if (shader == nullptr) break;
+    const std::string id = lacquer_packed_string(&file, shader->id);
     if (!isShaderId(id)) continue;
-    for (uint32_t k = 0; k < shader->codes.count; ++k) {
+    for (uint32_t k = 0; k < std::min<size_t>(shader->codes.count, most_codes); ++k) {
       const auto* code = LACQUER_PACKED_AT(&file, shader->codes, lacquer_packed_code, k);
+      if (code == nullptr) break;
       Target target{};
-      if (code == nullptr || !findTarget(lacquer_packed_string(&file, code->target), target)) continue;
+      if (!findTarget(lacquer_packed_string(&file, code->target), target)) continue;
       const int stage = std::string_view(lacquer_packed_string(&file, code->stage)) == "vert" ? 0 : 1;
       paths.push_back(shaderPath(target, id, stage));
     }

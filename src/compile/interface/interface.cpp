@@ -205,7 +205,7 @@ bool isLayerOfOne(const ReflectedTexture& a, const ReflectedTexture& b) {
   return a.layered && b.layered && a.array == b.array;
 }
 
-/// What is bound once is read by all stages that read a layer of it.
+/// An array of layers has one place: the stages that read one of its textures are those of all.
 void shareStages(std::vector<ReflectedTexture>& textures) {
   for (ReflectedTexture& to : textures) {
     for (const ReflectedTexture& from : textures) {

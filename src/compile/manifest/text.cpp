@@ -125,9 +125,8 @@ std::string_view dimensionOf(std::string_view type) {
   return type == ir::typeName(ir::Type::Texture3D) ? "3d" : "2d";
 }
 
-/// What textures are bound: of an array one for all that are taken from it, with the array's name and the
-/// stages of all, since a layout has one entry for a place. `numbered`: of arrays whose textures have numbers
-/// as well as of those with layers.
+/// The textures that a layout has an entry for: an array stands once, under its own name, with the stages of
+/// all its textures. `numbered`: arrays whose textures have numbers, too, and not only those with layers.
 std::vector<ReflectedTexture> boundTextures(const Reflection& of, bool numbered) {
   std::vector<ReflectedTexture> bound;
   for (const ReflectedTexture& texture : of.textures) {

@@ -28,7 +28,7 @@ public:
   }
 
 private:
-  /// What lies in one texture: it has one format and one sampler.
+  /// The textures that become layers of one array: they have one format and one sampler.
   struct Group {
     std::vector<size_t> slots;
   };

@@ -28,7 +28,7 @@ passes::LightFacts lightsOf(const gltf::Scene& scene) {
 
 namespace {
 
-/// What the file leaves open is linear, between mip levels as well.
+/// A filter that the file leaves open is linear, between mip levels as well.
 ir::Sampler samplerOf(const gltf::Sampler& from) {
   constexpr int kClamp = 33071, kMirror = 33648, kNearest = 9728, kLinear = 9729, kFirstMipmap = 9984;
   const auto wrap = [](int number) {

@@ -140,12 +140,12 @@ struct TextureSlot {
   Stages others{};                    ///< as a block's
   std::string array{};  ///< not empty: it is one of this array, at the number that the material's record has
   uint32_t number = 0;  ///< then: that field of the record; with `layers`, of the material's block
-  /// What all materials of the shader look it up by, where the options ask for it and the file says it;
-  /// behind the pipeline it is a static sampler.
+  /// The sampler of all the shader's materials, where the options ask for it and the file says it; behind the
+  /// pipeline it is a static sampler.
   std::optional<Sampler> sampler{};
   std::string layers{};  ///< not empty: it is a layer of the texture of this name, at the number in the block
 
-  /// What the texts call what is bound for it, but an array's.
+  /// The name of the texture that is bound for it, other than an array's of bindless.
   const std::string& boundName() const { return layers.empty() ? name : layers; }
 };
 
