@@ -37,7 +37,10 @@ function(lacquer_web_module target name)
   list(TRANSFORM functions PREPEND "_")
   list(JOIN functions "," functions)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME "${name}" SUFFIX .wasm)
-  target_link_options(${target} PRIVATE -Oz --no-entry "-sEXPORTED_FUNCTIONS=_malloc,_free,${functions}" -sSTANDALONE_WASM=1
+  # -Oz inlines nothing that grows: a second round inlines the small functions of the standard library, for half the time and
+  # fewer bytes.
+  target_link_options(${target} PRIVATE -Oz -sBINARYEN_EXTRA_PASSES=--flexible-inline-max-function-size=10,-O3 --no-entry
+                      "-sEXPORTED_FUNCTIONS=_malloc,_free,${functions}" -sSTANDALONE_WASM=1
                       -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=16777216)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${PROJECT_SOURCE_DIR}/src/lacquer_c.h")
 endfunction()
