@@ -217,17 +217,22 @@ private:
 };
 
 /// The text without the parentheses at `open` and its partner; nothing when they are a call's, or stand
-/// around a choice within a choice, where they are for the reader.
+/// around a choice within a choice, or `&&` within `||`, where they are for the reader and for compilers that
+/// warn.
 std::optional<std::string> withoutPair(const std::string& text, size_t open) {
   if (open > 0 && std::isalnum(static_cast<unsigned char>(text[open - 1]))) return std::nullopt;
   int depth = 0;
   size_t close = open;
-  bool choice = false;
+  bool choice = false, both = false;
   for (;; ++close) {
     depth += text[close] == '(' ? 1 : text[close] == ')' ? -1 : 0;
     choice |= depth == 1 && text[close] == '?';
+    both |= depth == 1 && text[close] == '&';
     if (depth == 0) break;
   }
+  const bool of_either =
+      text.compare(close + 1, 3, " ||") == 0 || (open >= 3 && text.substr(open - 3, 3) == "|| ");
+  if (both && of_either) return std::nullopt;
   if (choice && open >= 2 && text.substr(open - 2, 2) == "? ") return std::nullopt;
   std::string result = text;
   result[open] = ' ';

@@ -436,8 +436,13 @@ Expression operatorText(std::string_view spelling, std::span<const Expression> o
                         parenthesized(operands[1], Precedence::Unary)),
             precedence};
   }
-  return {fmt::format("{} {} {}", parenthesized(operands[0], precedence), spelling,
-                      parenthesized(operands[1], tighter(precedence))),
+  // `&&` within `||`: WGSL wants parentheses there, and DXC and Clang warn without them.
+  const auto operand = [&](const Expression& of, Precedence least) {
+    const bool both = precedence == Precedence::Or && of.precedence == Precedence::And;
+    return parenthesized(of, both ? Precedence::Unary : least);
+  };
+  return {fmt::format("{} {} {}", operand(operands[0], precedence), spelling,
+                      operand(operands[1], tighter(precedence))),
           precedence};
 }
 

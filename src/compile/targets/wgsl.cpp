@@ -196,17 +196,6 @@ public:
     return Dialect::call(op, result, arguments);
   }
 
-  /// `&&` binds no tighter than `||`: neither may stand beside the other without parentheses.
-  Expression operation(std::string_view spelling, std::span<const Expression> operands) const override {
-    if (spelling != "||") return operatorText(spelling, operands);
-    std::vector<Expression> apart;
-    for (const Expression& operand : operands) {
-      const bool both = operand.precedence == Precedence::And;
-      apart.push_back(both ? Expression{fmt::format("({})", operand.text)} : operand);
-    }
-    return operatorText(spelling, apart);
-  }
-
   Expression select(const Expression& condition, const Expression& yes, const Expression& no) const override {
     return {fmt::format("select({}, {}, {})", no.text, yes.text, condition.text)};
   }

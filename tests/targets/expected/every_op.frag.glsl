@@ -241,7 +241,7 @@ void main() {
     vec3 along_x = dFdx(v_v3);
     vec3 along_y = dFdy(v_v3);
     bool equal_2 = v_x.w == v_x.y;
-    vec3 choice = less_2 && !(v_x.z <= v_x.y) || equal_2 ? v_v3 : v_v3.yzx;
+    vec3 choice = (less_2 && !(v_x.z <= v_x.y)) || equal_2 ? v_v3 : v_v3.yzx;
     vec3 where_they_differ = equal_2 ? vec3(0.0) : v_v3;
     vec3 add_25 = add_24 + (length_of_value + dot_product) + unit + along_x + along_y + choice + add_0_value + where_they_differ;
 

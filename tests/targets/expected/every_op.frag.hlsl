@@ -238,7 +238,7 @@ void main(
     float3 along_x = ddx(v_v3);
     float3 along_y = ddy(v_v3);
     bool equal_2 = v_x.w == v_x.y;
-    float3 choice = less_2 && !(v_x.z <= v_x.y) || equal_2 ? v_v3 : v_v3.yzx;
+    float3 choice = (less_2 && !(v_x.z <= v_x.y)) || equal_2 ? v_v3 : v_v3.yzx;
     float3 where_they_differ = equal_2 ? float3(0.0, 0.0, 0.0) : v_v3;
     float3 add_25 = add_24 + (length_of_value + dot_product) + unit + along_x + along_y + choice + add_0_value + where_they_differ;
 
