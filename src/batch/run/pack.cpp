@@ -12,6 +12,7 @@
 #include "run/packed.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "shader/module.h"
 #include "shader/print.h"
 #include "support/contain.h"
 #include "support/file.h"
