@@ -8,8 +8,9 @@
  *   puts(lacquer_packed_string(&file, one->id));
  *
  * The reader stays within the bytes, whatever they are: a list that leaves the file has no elements, a
- * text that does is "". Numbers are little-endian, floats IEEE 754 binary32. A file of another version is
- * refused; in one of this version nothing moves. */
+ * text that does is "". Lists may lie over one another, so that a small file is long to go through: who reads
+ * anybody's counts what it reads. Numbers are little-endian, floats IEEE 754 binary32. A file of another
+ * version is refused; in one of this version nothing moves. */
 #ifndef LACQUER_PACKED_H
 #define LACQUER_PACKED_H
 

@@ -292,9 +292,12 @@ TEST(Packed, isWrittenInPlaceOfTheManifest) {
   EXPECT_TRUE(readBytes(options.packed) == one);
 }
 
-/// What lies in the file's place may be anybody's: a thousand shaders of four thousand million codes each end
-/// the run as soon as none would.
-TEST(Packed, replacesAFileWhoseListsHaveNoEnd) {
+/// What lies in the file's place may be anybody's: a thousand shaders of four thousand million codes each,
+/// and a hundred thousand whose one name is 16 MiB long, end the run as soon as none would.
+class PackedOver : public testing::TestWithParam<bool> {};
+
+TEST_P(PackedOver, replacesAFileWithoutAnEnd) {
+  const bool long_names = GetParam();
   const std::filesystem::path root = emptyFolder();
   const std::string coat = std::string(LACQUER_EXAMPLES) + "/coat.gltf";
   Options options = forPacking();
@@ -306,12 +309,18 @@ TEST(Packed, replacesAFileWhoseListsHaveNoEnd) {
   lacquer_packed_shader shader{};
   std::memcpy(&top, good.data(), sizeof(top));
   std::memcpy(&shader, good.data() + top.shaders.at, sizeof(shader));
-  shader.codes.count = 0xffffffff;
-  constexpr uint32_t kShaders = 1000;
   std::string hostile = good;
+  if (long_names) {
+    constexpr uint32_t kName = 1U << 24;
+    shader.id = {static_cast<uint32_t>(hostile.size()), kName};
+    hostile.append(kName, 'a').push_back('\0');
+  } else {
+    shader.codes.count = 0xffffffff;
+  }
+  const uint32_t shaders = long_names ? 100'000 : 1000;
   hostile.resize((hostile.size() + 15) / 16 * 16);
-  top.shaders = {static_cast<uint32_t>(hostile.size()), kShaders};
-  for (uint32_t i = 0; i < kShaders; ++i)
+  top.shaders = {static_cast<uint32_t>(hostile.size()), shaders};
+  for (uint32_t i = 0; i < shaders; ++i)
     hostile.append(reinterpret_cast<const char*>(&shader), sizeof(shader));
   top.size = static_cast<uint32_t>(hostile.size());
   std::memcpy(hostile.data(), &top, sizeof(top));
@@ -319,6 +328,8 @@ TEST(Packed, replacesAFileWhoseListsHaveNoEnd) {
   EXPECT_TRUE(generate({coat}, {}, (root / "out").string(), options, messages).ok);
   EXPECT_TRUE(readBytes(options.packed) == good);
 }
+
+INSTANTIATE_TEST_SUITE_P(All, PackedOver, testing::Bool());
 
 TEST(Packed, isWrittenByAMerge) {
   const std::filesystem::path root = emptyFolder();

@@ -328,6 +328,23 @@ TEST(Stale, AManifestCannotNameOtherFiles) {
   EXPECT_EQ(place.run({"gen", "m.gltf", "-o", "out", "--target", "glsl"}).status, 0);
 }
 
+/// Nor has what lies where a killed run notes its shaders.
+TEST(Stale, ANoteCannotNameOtherFiles) {
+  const Workplace place;
+  place.write("m.gltf", gltfOf({R"({"name": "a"})"}));
+  const std::string left = "glsl/forward-base-0123456789abcdef0123456789abcdef.frag.glsl";
+  for (const std::string& name :
+       std::vector<std::string>{"out/precious.glsl", "precious.frag.glsl", "out/" + left})
+    place.write(name, "mine");
+  place.write("out/.lacquer-tmp/lacquer-0123456789abcdef-0.tmp",
+              "lacquer: what a run may leave behind\nprecious.glsl\n../precious.frag.glsl\n" + left + "\n");
+  ASSERT_EQ(place.run({"gen", "m.gltf", "-o", "out", "--target", "glsl"}).status, 0);
+  EXPECT_TRUE(place.has("out/precious.glsl"));
+  EXPECT_TRUE(place.has("precious.frag.glsl"));
+  EXPECT_FALSE(place.has("out/" + left));
+  EXPECT_FALSE(place.has("out/.lacquer-tmp"));
+}
+
 /// What a failed material has left behind goes as well, and a second run of the same finds nothing to do.
 TEST(Stale, NothingThatIsNeededGoes) {
   const Workplace place;

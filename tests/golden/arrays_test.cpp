@@ -145,6 +145,23 @@ TEST(Arrays, AreNamedOnceInOtherApis) {
             std::string::npos);
 }
 
+/// So is the array that holds the textures of all materials.
+TEST(Bindless, TexturesAreNamedOnceInOtherApis) {
+  for (const bool buffers : {false, true}) {
+    Options options = forAll(BindingModel::Bindless);
+    options.validate = false;
+    options.argument_buffers = buffers;
+    options.targets = {Target::Wgsl, Target::Msl};
+    const Json entry = Json::parse(manyBy(options).shader.interfaceJson());
+    for (const char* api : {"webgpu", "metal"}) {
+      std::multiset<std::string> names;
+      for (const Json& row : entry[api]["bindings"]) names.insert(row["name"].get<std::string>());
+      EXPECT_EQ(names.count("textures"), 1U) << api;
+      EXPECT_EQ(names.count("base_color_texture"), 0U) << api;
+    }
+  }
+}
+
 /// With one format there is one array for each sampler.
 TEST(Arrays, AreOneWhereTheShaderDecodes) {
   Options options = forAll(BindingModel::Arrays);

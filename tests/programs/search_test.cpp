@@ -19,8 +19,9 @@ namespace {
 /// The programs of a file's materials, and what they cost by the model.
 class Materials {
 public:
-  explicit Materials(const std::string& path) {
+  explicit Materials(const std::string& path, uint32_t optimize = 0) {
     options_.targets = {Target::Spirv};
+    options_.optimize = optimize;
     language_ = *libraryFor(options_);
     EXPECT_TRUE(resolveNames(*language_, options_));
     setting_.emplace(Setting{options_, *language_, {}, nullptr, nullptr, {}, "."});
@@ -106,6 +107,17 @@ TEST(ProgramSearch, IsNearTheBestOfRandomMaterials) {
     std::ofstream(path) << lacquer::test::RandomMaterial(seed).valid(6).dump();
     Materials materials(path);
     expectNearTheBest(materials, 6, seed, "seed " + std::to_string(seed));
+  }
+}
+
+/// Which materials share a program, and a fallback, is decided without a search for cheaper forms.
+TEST(ProgramSearch, LooksAtPlainForms) {
+  Materials materials((lacquer::test::sourceFolder() / "examples/clearcoat_tint.gltf").string(), 1);
+  ASSERT_GE(materials.items(2, 1).size(), 2U);
+  for (const Places& group : {Places{0}, Places{0, 1}}) {
+    const Result<ir::Module> module = materials.costs().moduleOfGroup(group);
+    ASSERT_TRUE(module);
+    EXPECT_FALSE(module->optimized) << group.size();
   }
 }
 

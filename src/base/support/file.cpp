@@ -33,6 +33,8 @@ namespace {
 
 constexpr size_t kBlock = size_t{1} << 18;
 constexpr std::string_view kScratch = "/.lacquer-tmp";
+/// What a note begins with. Nothing else that is half written there does.
+constexpr std::string_view kNote = "lacquer: what a run may leave behind\n";
 
 /// The last part of a name that no other process or thread takes at the same time.
 std::string temporaryName() {
@@ -107,28 +109,41 @@ int openRegular(const std::string& path, Links links, std::string& why, struct s
   return -1;
 }
 
-/// Removes a file that no living process writes.
-void removeAbandoned(int folder, const char* name) {
+/// True for a note, which is kept.
+bool isNote(int fd) {
+  std::array<char, kNote.size()> head{};
+  return ::pread(fd, head.data(), head.size(), 0) == static_cast<ssize_t>(head.size()) &&
+         std::string_view(head.data(), head.size()) == kNote;
+}
+
+/// Removes a file that no living process writes. A note that is found goes to `notes`, where that is asked
+/// for.
+void removeAbandoned(int folder, const char* name, std::vector<std::string>* notes) {
   const int fd = ::openat(folder, name, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return;
   struct stat status {};
   const bool regular = ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
-  if (regular && ::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlinkat(folder, name, 0);
+  bool noted = false;
+  if (regular && ::flock(fd, LOCK_EX | LOCK_NB) == 0) {
+    noted = notes != nullptr && isNote(fd);
+    if (!noted) ::unlinkat(folder, name, 0);
+  }
   ::close(fd);
+  if (noted) notes->emplace_back(name);
 }
 
-void removeAbandonedIn(const std::string& path) {
+/// `notes`: the names of notes that are kept.
+void removeAbandonedIn(const std::string& path, std::vector<std::string>* notes = nullptr) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) return;
-  DIR* folder = ::fdopendir(fd);
+  const std::unique_ptr<DIR, int (*)(DIR*)> folder(::fdopendir(fd), ::closedir);
   if (folder == nullptr) {
     ::close(fd);
     return;
   }
-  while (const dirent* entry = ::readdir(folder)) {
-    if (isTemporaryName(entry->d_name)) removeAbandoned(fd, entry->d_name);
+  while (const dirent* entry = ::readdir(folder.get())) {
+    if (isTemporaryName(entry->d_name)) removeAbandoned(fd, entry->d_name, notes);
   }
-  ::closedir(folder);
 }
 
 void listNames(const std::string& path, std::vector<std::string>& names) {
@@ -160,7 +175,7 @@ std::FILE* createLocked(const std::string& folder, const std::string& name, Link
   return std::fopen((folder + "/" + name).c_str(), "wbx");
 }
 
-void removeAbandonedIn(const std::string&) {}
+void removeAbandonedIn(const std::string&, std::vector<std::string>* = nullptr) {}
 
 void listNames(const std::string& path, std::vector<std::string>& names) {
   std::error_code error;
@@ -321,12 +336,39 @@ Result<bool> makeFolder(const std::string& path) {
 std::string Scratch::below(const std::string& folder) { return folder + std::string(kScratch); }
 
 Scratch::Scratch(const std::string& folder) : path_(below(folder)) {
-  removeAbandonedIn(path_);
+  removeAbandonedIn(path_, &noted_);
+  for (const std::string& name : noted_) {
+    const Result<std::string> text = readFile(path_ + "/" + name, Limits{}.file, Links::Refuse);
+    if (text && text->starts_with(kNote)) notes_.push_back(text->substr(kNote.size()));
+  }
   removeFolder(path_);
 }
 
 Scratch::~Scratch() {
+  if (note_ != nullptr) std::fclose(note_);
   removeFolder(path_);  // fails while another process has a file in it, which is right
+}
+
+void Scratch::note(std::string_view text) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  std::string name = temporaryName();
+  note_ = createLocked(path_, name, Links::Refuse);
+  if (note_ == nullptr) return;
+  std::fwrite(kNote.data(), 1, kNote.size(), note_);
+  std::fwrite(text.data(), 1, text.size(), note_);
+  const std::vector<std::string> theirs = std::exchange(noted_, {std::move(name)});
+  if (std::fflush(note_) == 0) remove(theirs);
+}
+
+void Scratch::forget() {
+  remove(std::exchange(noted_, {}));
+  notes_.clear();
+}
+
+void Scratch::remove(const std::vector<std::string>& names) const {
+  std::error_code ignored;
+  for (const std::string& name : names) fs::remove(path_ + "/" + name, ignored);
 }
 
 ReplacingFile::ReplacingFile(std::string path, const Writing& how)

@@ -47,6 +47,8 @@ Result<bool> makeFolder(const std::string& path);
 /// processes left there is removed by the next Scratch (a writer holds a lock on its file, where the system
 /// has such locks), and the folder itself goes with the last of them. A link in its place is not followed,
 /// and what has no name of ours or is no regular file is left alone.
+///
+/// A note there is what a run that does not come to its end leaves to the next one.
 class Scratch {
 public:
   explicit Scratch(const std::string& folder);
@@ -57,8 +59,19 @@ public:
   /// Where it is below a folder.
   static std::string below(const std::string& folder);
 
+  /// What runs have noted that did not come to forget().
+  const std::vector<std::string>& notes() const { return notes_; }
+  /// Leaves this to the next Scratch in place of notes(). A note that cannot be written is none.
+  void note(std::string_view text);
+  /// Removes the notes.
+  void forget();
+
 private:
+  void remove(const std::vector<std::string>& names) const;
+
   std::string path_;
+  std::vector<std::string> notes_, noted_;  ///< texts, and the names of the notes that there are
+  std::FILE* note_ = nullptr;               ///< open, and so locked, as long as this process lives
 };
 
 /// The names in a folder, "." and ".." among them, in no order; none where there is no folder, or a link in

@@ -108,7 +108,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
                                        ? run.receipt(inputs.files, inputs.materials, folder)
                                        : std::nullopt;
   if (receipt && run.find(*receipt)) {
-    const Scratch left_by_killed_runs(folder);
+    Scratch left_by_killed_runs(folder);
+    LeftShaders(folder, left_by_killed_runs, {}).remove(shaderFiles(run.result()), run.readFiles());
     return run.finish();
   }
   if (!run.open(folder)) return run.finish();
@@ -118,8 +119,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     run.result().ok = false;
     return run.finish();
   }
-  const Scratch scratch(folder);
-  const Strings earlier = shard ? Strings() : leftShaders(manifest_path, options);
+  Scratch scratch(folder);
+  LeftShaders left(folder, scratch, shard ? Strings() : leftShaders(manifest_path, options));
   std::optional<ReplacingFile> written_to;
   if (!packed) written_to.emplace(path, Writing{shard ? nullptr : &scratch, options.sync});
   OutputKey content;
@@ -134,7 +135,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     if (!shard) manifest.file(file.text);
     for (Pipeline& pipeline : file.pipelines) pipelines.add(std::move(pipeline));
   });
-  if (!run.make(folder, scratch, receipt ? &*receipt : nullptr,
+  if (!run.make(folder, scratch, shard ? nullptr : &left, receipt ? &*receipt : nullptr,
                 [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); })) {
     return run.finish();
   }
@@ -148,7 +149,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     else
       run.wrote(tl::make_unexpected(bytes.error()));
     if (run.result().ok) {
-      removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
+      left.remove(shaderFiles(run.result()), run.readFiles());
       removeManifest(manifest_path);
     }
   }
@@ -156,7 +157,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     const Result<bool> written = written_to->finish();
     run.wrote(written);
     if (receipt) receipt->wrote(path, content.finish());
-    if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
+    if (written && !shard) left.remove(shaderFiles(run.result()), run.readFiles());
   }
   run.writeProgramsReport(notes);
   if (!options.pipelines.empty() && !shard) run.write(options.pipelines, pipelines.text(), notes);

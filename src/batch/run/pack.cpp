@@ -12,6 +12,7 @@
 #include "run/packed.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "shader/module.h"
 #include "shader/print.h"
 #include "support/contain.h"
 #include "support/file.h"
@@ -142,6 +143,12 @@ Result<std::string> packedOf(std::string_view manifest, const std::string& folde
   return packedOf(*values, folder, {}, file, limits);
 }
 
+/// A text that may be a name: what is longer is none, and is not read.
+static std::string nameIn(const lacquer_packed& file, lacquer_packed_text text) {
+  constexpr uint32_t kLongest = 1024;
+  return text.count <= kLongest ? lacquer_packed_string(&file, text) : "";
+}
+
 Strings packedShaders(const std::string& path) {
   Strings paths;
   const Result<std::string> bytes = readFile(path);
@@ -154,14 +161,14 @@ Strings packedShaders(const std::string& path) {
   for (uint32_t i = 0; i < top->shaders.count; ++i) {
     const auto* shader = LACQUER_PACKED_AT(&file, top->shaders, lacquer_packed_shader, i);
     if (shader == nullptr) break;
-    const std::string id = lacquer_packed_string(&file, shader->id);
+    const std::string id = nameIn(file, shader->id);
     if (!isShaderId(id)) continue;
     for (uint32_t k = 0; k < std::min<size_t>(shader->codes.count, most_codes); ++k) {
       const auto* code = LACQUER_PACKED_AT(&file, shader->codes, lacquer_packed_code, k);
       if (code == nullptr) break;
       Target target{};
-      if (!findTarget(lacquer_packed_string(&file, code->target), target)) continue;
-      const int stage = std::string_view(lacquer_packed_string(&file, code->stage)) == "vert" ? 0 : 1;
+      if (!findTarget(nameIn(file, code->target), target)) continue;
+      const int stage = nameIn(file, code->stage) == "vert" ? 0 : 1;
       paths.push_back(shaderPath(target, id, stage));
     }
   }

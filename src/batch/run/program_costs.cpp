@@ -83,8 +83,22 @@ std::vector<cost::Outcome> measureSubjects(const std::vector<cost::Subject>& sub
 
 }  // namespace
 
+static Options withoutSearch(Options options) {
+  options.optimize = 0;
+  options.optimize_error = 0;
+  return options;
+}
+
+static Setting withOptions(const Setting& s, const Options& options) {
+  return {options,  s.library, s.base, s.cache,   s.times,  s.limits,
+          s.folder, s.sharing, s.keys, s.several, s.id_bits};
+}
+
 ProgramCosts::ProgramCosts(const Setting& setting, const std::vector<OwnProgram>& all, bool by_model)
-    : setting_(setting), all_(all), no_driver_(by_model || !cost::unavailable().empty()) {
+    : plain_(withoutSearch(setting.options)),
+      setting_(withOptions(setting, plain_)),
+      all_(all),
+      no_driver_(by_model || !cost::unavailable().empty()) {
   by_driver_ = !no_driver_ && all.size() <= kDriverPrograms;
 }
 

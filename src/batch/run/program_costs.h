@@ -19,6 +19,8 @@ struct OwnProgram {
   std::vector<const Example*> examples;  ///< a material of each
 };
 
+/// Of shaders in their plain forms: a search for cheaper ones (Options::optimize) takes seconds a shader, and
+/// groups are many.
 class ProgramCosts {
 public:
   /// `all` must outlive it. With `by_model` no driver is asked even if there is one.
@@ -48,7 +50,8 @@ private:
   double choicesOf(size_t structures) const;
   size_t structuresOf(const programs::Places& group) const;
 
-  const Setting& setting_;
+  const Options plain_;
+  const Setting setting_;
   const std::vector<OwnProgram>& all_;
   bool by_driver_ = false;
   bool no_driver_ = false;

@@ -223,17 +223,19 @@ void Run::checkNames(const std::vector<std::string>& only, const std::vector<std
   }
 }
 
-bool Run::make(const std::string& folder, const Scratch& scratch, Receipt* receipt,
+bool Run::make(const std::string& folder, const Scratch& scratch, LeftShaders* left, Receipt* receipt,
                const std::function<void(const MadeShader&)>& each) {
-  Strings outputs;
+  Strings paths, outputs;
   for (const auto& [id, shader] : structures_->shaders()) {
     for (const Target target : options_.targets) {
       for (int stage = firstStage(target, shader.structure->has_vertex); stage < 2; ++stage) {
-        outputs.push_back(folder + "/" + shaderPath(target, id, stage));
+        paths.push_back(shaderPath(target, id, stage));
+        outputs.push_back(folder + "/" + paths.back());
       }
     }
   }
   if (!mayWrite(outputs)) return false;
+  if (left != nullptr) left->expect(paths);
   const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
                                                    receipt, [&](size_t done) { progress(done, false); });
   progress(made.size(), true);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <set>
 
+#include "manifest/stale.h"
 #include "run/programs.h"
 #include "run/receipt.h"
 #include "run/shaders.h"
@@ -32,9 +33,10 @@ public:
   void read(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
             const std::function<void(FileResult&)>& each);
 
-  /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids. `receipt` may
-  /// be null. False, with nothing written, when a shader's file is an input.
-  bool make(const std::string& folder, const Scratch& scratch, Receipt* receipt,
+  /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids. `left`, which
+  /// is told before, and `receipt` may be null. False, with nothing written, when a shader's file is an
+  /// input.
+  bool make(const std::string& folder, const Scratch& scratch, LeftShaders* left, Receipt* receipt,
             const std::function<void(const MadeShader&)>& each);
 
   void report(const Diagnostics& diagnostics, const std::string& file) {

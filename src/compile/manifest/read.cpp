@@ -217,7 +217,7 @@ public:
       if (byArray(name) == nullptr) stages(row, at, *bound);
     });
     for (ReflectedTexture& texture : of_.textures) {
-      if (!texture.layered || texture.array.empty()) continue;
+      if (texture.array.empty()) continue;
       const ReflectedTexture& first = *byArray(texture.array);
       texture.msl = first.msl, texture.msl_argument = first.msl_argument;
     }

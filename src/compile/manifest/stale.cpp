@@ -1,7 +1,10 @@
 #include "manifest/stale.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
+#include <sstream>
+#include <utility>
 
 #include "json/json.h"
 #include "setting/options.h"
@@ -18,6 +21,24 @@ static void dropFiles(std::string& text) {
   const size_t at = text.rfind(kShaders);
   const size_t files = text.find(",\n  \"schema\": ");
   if (text.starts_with(kFirst) && files < at && at != std::string::npos) text.erase(files, at - files);
+}
+
+/// What a shader of this name may have of a target's files.
+static void addPaths(Target target, const std::string& id, std::vector<std::string>& paths) {
+  for (int stage = firstStage(target, true); stage < 2; ++stage)
+    paths.push_back(shaderPath(target, id, stage));
+}
+
+/// True for what addPaths() may give, so that a note has no say about other files.
+static bool isShaderPath(const std::string& path) {
+  const size_t begin = path.find('/') + 1;
+  const std::string id = path.substr(begin, path.find('.', begin) - begin);
+  std::vector<std::string> paths;
+  for (const std::string& name : targetNames()) {
+    Target target{};
+    if (isShaderId(id) && findTarget(name, target)) addPaths(target, id, paths);
+  }
+  return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 
 std::vector<std::string> listedShaders(const std::string& path) {
@@ -37,8 +58,7 @@ std::vector<std::string> listedShaders(const std::string& path) {
       Target target{};
       findTarget(name, target);
       if (json::member(*files, targetName(target)) == nullptr) continue;
-      for (int stage = firstStage(target, true); stage < 2; ++stage)
-        listed.push_back(shaderPath(target, id, stage));
+      addPaths(target, id, listed);
     }
   }
   return listed;
@@ -54,6 +74,39 @@ void removeStale(const std::string& folder, const std::vector<std::string>& earl
     if (needed.contains(path) || !fs::is_regular_file(fs::symlink_status(file, ignored))) continue;
     if (clashes(inputs, {file}).empty()) fs::remove(file, ignored);
   }
+}
+
+LeftShaders::LeftShaders(std::string folder, Scratch& scratch, std::vector<std::string> earlier)
+    : folder_(std::move(folder)), scratch_(scratch), earlier_(std::move(earlier)) {
+  for (const std::string& note : scratch_.notes()) {
+    std::istringstream lines(note);
+    for (std::string path; std::getline(lines, path);) {
+      if (isShaderPath(path)) earlier_.push_back(path);
+    }
+  }
+}
+
+void LeftShaders::expect(const std::vector<std::string>& paths) {
+  const std::set<std::string> needed(paths.begin(), paths.end());
+  std::set<std::string> all(earlier_.begin(), earlier_.end());
+  const auto goes = [&](const std::string& path) {
+    std::error_code ignored;
+    return !needed.contains(path) && std::filesystem::exists(folder_ + "/" + path, ignored);
+  };
+  // What the list names before and after is left by nobody.
+  if (scratch_.notes().empty() && std::includes(all.begin(), all.end(), needed.begin(), needed.end()) &&
+      std::none_of(all.begin(), all.end(), goes)) {
+    return;
+  }
+  all.insert(paths.begin(), paths.end());
+  std::string text;
+  for (const std::string& path : all) text += path + '\n';
+  scratch_.note(text);
+}
+
+void LeftShaders::remove(const std::vector<std::string>& kept, const std::vector<std::string>& inputs) {
+  removeStale(folder_, earlier_, kept, inputs);
+  scratch_.forget();
 }
 
 void removeManifest(const std::string& path) {

@@ -126,11 +126,11 @@ std::string_view dimensionOf(std::string_view type) {
 }
 
 /// The textures that a layout has an entry for: an array stands once, under its own name, with the stages of
-/// all its textures. `numbered`: arrays whose textures have numbers, too, and not only those with layers.
-std::vector<ReflectedTexture> boundTextures(const Reflection& of, bool numbered) {
+/// all its textures.
+std::vector<ReflectedTexture> boundTextures(const Reflection& of) {
   std::vector<ReflectedTexture> bound;
   for (const ReflectedTexture& texture : of.textures) {
-    const bool shared = texture.layered || (numbered && !texture.array.empty());
+    const bool shared = !texture.array.empty();
     const auto same = std::find_if(bound.begin(), bound.end(), [&](const ReflectedTexture& other) {
       return shared && other.array == texture.array;
     });
@@ -165,7 +165,7 @@ void writeWebGpu(const Reflection& of, JsonText& to) {
       to.key("minBindingSize").integer(std::max(block.array, 1U) * block.size).endObject();
     });
   }
-  for (const ReflectedTexture& texture : boundTextures(of, true)) {
+  for (const ReflectedTexture& texture : boundTextures(of)) {
     const bool compares = texture.type == ir::typeName(ir::Type::Texture2DShadow);
     // An object's textures hold numbers in 32-bit floats, which WebGPU does not filter.
     const bool numbers = texture.role == TextureRole::Object;
@@ -203,7 +203,7 @@ void writeMetal(const Reflection& of, bool argument_buffers, JsonText& to) {
         [] {});
   };
   for (const UniformBlock& block : of.blocks) row(block, block.name, true);
-  for (const ReflectedTexture& texture : boundTextures(of, false)) row(texture, texture.name, false);
+  for (const ReflectedTexture& texture : boundTextures(of)) row(texture, texture.name, false);
   to.endArray().endObject();
 }
 
