@@ -22,7 +22,7 @@ struct Moved {
 /// The front of cost against the mean colour difference in pictures of `size` pixels: each cheaper than the
 /// one before it, and off by more; the exact shader is not among them. All shaders are the cheapest equal
 /// forms of Options::optimize, at least 1, by the model alone. Empty where the template shows nothing that is
-/// lit. The same input gives the same front on every machine.
+/// lit.
 Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size, Messages& messages);
 
 }  // namespace lacquer::lod
