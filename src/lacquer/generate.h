@@ -15,6 +15,7 @@ namespace lacquer {
 
 struct Contract;
 struct EditedGraph;
+struct Tuned;
 
 /// The vertex attributes of a primitive beside POSITION.
 struct Attributes {
@@ -87,6 +88,7 @@ private:
   friend std::string toMaterialX(const Scene&, const Strings&, const std::string&,
                                  const std::vector<EditedGraph>&, const Options&, Messages&);
   friend std::string toGltf(const Scene&, const Strings&, uint32_t, const Options&, Messages&);
+  friend std::optional<Tuned> tune(const Scene&, size_t, const Attributes&, const Options&, Messages&);
   struct Impl;
   const Impl& impl() const;
   std::shared_ptr<Impl> impl_;

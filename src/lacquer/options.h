@@ -199,7 +199,7 @@ struct Options {
   bool fallback = false;
   std::string weights;          ///< a file: how much of the picture each material takes, for `programs`
   std::string programs_report;  ///< of generate(): a .json, .md or .svg file with what programs cost
-  /// What programs, and the forms that `optimize` finds, cost by the model, which is the same on every
+  /// What programs, the forms that `optimize` finds and levels cost by the model, which is the same on every
   /// machine; else a driver is asked where there is one.
   bool programs_model = false;
   std::string pipelines;  ///< of generate(): a JSON file with the pipelines to make ahead of time

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "lacquer/generate.h"
 #include "lacquer/graph.h"
 #include "lacquer/options.h"
+#include "lacquer/results.h"
 
 namespace lacquer {
 
@@ -19,19 +21,36 @@ struct TunedForm {
   size_t approximations = 0;
 };
 
+/// Nodes of a material that are computed at the vertices and interpolated (docs/lod.md).
+struct TunedMove {
+  Strings simplify;          ///< for Options: "vertex:NODE" each
+  Strings options;           ///< the program's, which with those given make this shader
+  std::string shader;        ///< its id
+  SeenDifference error;      ///< from the material as it is, in pictures
+  double cycles = 0;         ///< of the fragment stage, by the family's model
+  double vertex_cycles = 0;  ///< that the vertex stage takes more
+  double cost = 0;           ///< `cycles` and an eighth of `vertex_cycles`: triangles of four pixels
+};
+
 struct Tuned {
   std::string name;    ///< of the node, or of the graph
   std::string family;  ///< whose cycles count
   double plain = 0;    ///< cycles of the form as it is
   /// Each cheaper than the one before it, and off by more; the first is equal in real numbers.
   std::vector<TunedForm> forms;
+  /// Each costs less than the one before it, looks worse, and has all that is equal and cheaper.
+  std::vector<TunedMove> moves;
 };
 
 /// The Pareto front of a node by itself: its parameters are inputs of each fragment in their declared ranges.
 /// `name`: a node, or one with a variant, "fresnel_conductor.exact". Of the options, `node_directories`,
 /// `optimize` (0 counts as 1) and `optimize_for`. Nothing on an error: "no-such-node", "no-such-variant".
 std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages);
-/// The same of a graph's shader.
+/// The same of a graph's shader; `moves` too, where it is no scene's.
 std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages);
+/// The same of a material on primitives with these attributes, with its `moves`, which pictures are made for
+/// as of makeLevels(). "no-such-material" where there is none of that index.
+std::optional<Tuned> tune(const Scene& scene, size_t material, const Attributes& attributes,
+                          const Options& options, Messages& messages);
 
 }  // namespace lacquer

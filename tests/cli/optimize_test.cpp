@@ -105,6 +105,46 @@ TEST(Tune, ANodesFrontFallsAsItsErrorGrows) {
   EXPECT_NE(place.run({"tune", "coat_absorption.none"}).err.find("[no-such-variant]"), std::string::npos);
 }
 
+/// What goes to the vertices of a material is seen in pictures, and is what the options make that are
+/// printed.
+TEST(Tune, MovesToTheVerticesAreSeenInPicturesAndMadeByTheirOptions) {
+  const Workplace place;
+  const Words subject{(sourceFolder() / "bench/works/w0.gltf").string(), "--lights", "directional:1"};
+  const Outcome outcome =
+      place.run(words(words({"tune"}, subject), {"--json", "--picture", "front.svg"}), kLong);
+  ASSERT_EQ(outcome.status, 0) << outcome.all();
+  const json front = json::parse(outcome.out);
+  const json& moves = front["moves"];
+  ASSERT_GE(moves.size(), 2U);
+  double error = 0, cost = front["forms"][0]["cycles"];
+  for (const json& move : moves) {
+    EXPECT_GT(move["error"]["delta_e"]["mean"], error) << move;
+    EXPECT_LT(move["cost"], cost) << move;
+    EXPECT_NEAR(move["cost"], move["cycles"].get<double>() + move["vertex_cycles"].get<double>() / 8, 1e-9);
+    error = move["error"]["delta_e"]["mean"];
+    cost = move["cost"];
+    ASSERT_FALSE(move["simplify"].empty());
+    for (const json& word : move["simplify"]) EXPECT_TRUE(word.get<std::string>().starts_with("vertex:"));
+  }
+  for (const json* move : {&moves.front(), &moves.back()}) {
+    const Outcome made =
+        place.run(words(words({"gen", "-o", "o", "-q", "--target", "glsl", "--no-validate"}, subject),
+                        (*move)["options"].get<Words>()),
+                  kLong);
+    ASSERT_EQ(made.status, 0) << made.all();
+    const json shaders = place.manifest("o")["shaders"];
+    ASSERT_EQ(shaders.size(), 1U);
+    EXPECT_EQ(shaders.begin().key(), (*move)["shader"]);
+    EXPECT_EQ(shaders.begin().value()["optimized"]["cycles"], (*move)["cycles"]);
+  }
+  const std::string picture = readFile(place.path() / "front.svg");
+  for (const json& move : moves)
+    EXPECT_NE(picture.find(move["simplify"][0].get<std::string>()), std::string::npos) << move;
+  const Outcome table = place.run(words(words({"tune"}, subject), {"--no-ibl"}), kLong);
+  EXPECT_NE(table.out.find("  --optimize 1 --model-costs --simplify vertex:normal.unit\n"), std::string::npos)
+      << table.all();
+}
+
 TEST(Tune, AFormIsAVariantThatStandsInANodesFile) {
   const Workplace place;
   const std::string node =

@@ -93,6 +93,18 @@ json placesOf(const json& fields) {
   return places;
 }
 
+TEST_F(Levels, CostByTheModelWhereThatIsAsked) {
+  Options options = quick();
+  options.programs_model = true;
+  Lod lod = chainLod(folder_ / "out");
+  lod.costs = {0.95};
+  Messages messages;
+  const std::optional<lacquer::Levels> made = makeLevels(lod, {work("w0")}, {}, options, messages);
+  ASSERT_TRUE(made && !hasError(messages)) << messages[0].text;
+  EXPECT_EQ(made->driver, "") << "no driver is asked";
+  EXPECT_GT(made->materials[0].levels[0].figures.cost, 0);
+}
+
 TEST_F(Levels, AreAChainOfOneInterfaceThatIsAsMeasured) {
   const json& answer = chain();
   ASSERT_EQ(answer["materials"].size(), 1U);

@@ -104,7 +104,7 @@ TEST(Clustered, WhatDimsALightDimsIt) {
 using Way = std::array<double, 3>;
 
 /// Of one light with a profile, the colours with it, and those that `intensity` makes of the colours without:
-/// of the ways from the light along its profile_axis, cross(direction, profile_axis) and its direction.
+/// of the ways from the light along its profile_axis, its profile_across and its direction.
 struct Profiled {
   std::vector<double> bright, shaped, expected;
 };
@@ -126,6 +126,7 @@ Profiled profiled(const std::function<double(double u, double v)>& table,
   set("spot_offset", {1});
   set("direction", {direction.begin(), direction.end()});
   set("profile_axis", {axis.begin(), axis.end()});
+  set("profile_across", {across.begin(), across.end()});
   for (double& count : bindings.lists["cluster.count"]) count = 1;
   for (double& first : bindings.lists["cluster.first"]) first = 0;
   const auto colors = [&](double profile) {

@@ -10,7 +10,10 @@
 #include "lang/body_text.h"
 #include "lang/parser.h"
 #include "lang/words.h"
+#include "lod/geometry.h"
+#include "lod/moves.h"
 #include "prove/nodes.h"
+#include "setting/attributes.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -165,31 +168,86 @@ std::optional<std::string> variantText(const std::string& node, size_t form, con
                       "the node language has no word for a loop of the shader or a sum over its lights")
                      .value());
   }
-  const Tuned plain{node, front.family, std::round(chosen.outcome.plain), {}};
+  const Tuned plain{node, front.family, std::round(chosen.outcome.plain), {}, {}};
   return documentation(plain, formOf(chosen.outcome)) + fmt::format("variant {} {{\n{}}}\n", variant, *body);
 }
 
-std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages) {
-  if (!filled(graph.impl_.get(), "graph", messages)) return std::nullopt;
+namespace {
+
+/// What goes to the vertices, by pictures as `lacquer lod` makes them when nothing is said.
+std::vector<TunedMove> movesOf(const EvalSubject& of, const gltf::VertexAttributes& attributes,
+                               const passes::LightFacts& lights, FileImages& images, const Language& language,
+                               const Options& options, const preview::Mesh& mesh, Messages& messages) {
+  const Lod lod;
+  const LodMaterial::Given given{of,      attributes, lights, images,    language,
+                                 options, lod.texels, mesh,   lod.radius};
+  const Result<std::vector<lod::Moved>> found = lod::moves(given, lod.size, messages);
+  if (!found) return report(found.error(), images.file(), messages), std::vector<TunedMove>();
+  std::vector<TunedMove> all;
+  for (const lod::Moved& one : *found) {
+    TunedMove move{one.words, {}, one.shader, one.error, one.cycles, one.more, one.cost};
+    if (options.optimize == 0) move.options = {"--optimize", "1"};
+    move.options.emplace_back("--model-costs");
+    for (const std::string& word : one.words) move.options.insert(move.options.end(), {"--simplify", word});
+    all.push_back(std::move(move));
+  }
+  return all;
+}
+
+/// `Impl` is Graph::Impl, which friends alone may name.
+template <class Impl>
+std::optional<Tuned> tunedGraph(const Impl& impl, const Options& options, Messages& messages) {
   // Up to where the search would begin.
   Options plain = options;
   plain.optimize = 0;
   plain.optimize_error = 0;
-  const Result<Graph::Impl::Prepared> ready = graph.impl_->prepared(plain, checkOptions);
+  const auto ready = impl.prepared(plain, checkOptions);
   if (!ready) {
-    report(ready.error(), graph.impl_->file, messages);
+    report(ready.error(), impl.file, messages);
     return std::nullopt;
   }
   ir::Module before;
   const auto keep = [&](std::string_view pass, const ir::Module& after) {
     if (pass == "vertex") before = after;
   };
-  const Result<ir::Module> module = graph.impl_->module(*ready, plain, keep);
+  const Result<ir::Module> module = impl.module(*ready, plain, keep);
   if (!module) {
-    report(module.error(), graph.impl_->file, messages);
+    report(module.error(), impl.file, messages);
     return std::nullopt;
   }
-  return tuned(graph.name(), before, options);
+  return tuned(impl.graph.name, before, options);
+}
+
+}  // namespace
+
+std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages) {
+  if (!filled(graph.impl_.get(), "graph", messages)) return std::nullopt;
+  const auto& impl = *graph.impl_;
+  std::optional<Tuned> made = tunedGraph(impl, options, messages);
+  const auto language = libraryFor(options);
+  if (!made || !language || impl.images == ImagesOf::Gltf) return made;
+  const InMemory of{impl.graph, **language, impl.file, impl.bytes, impl.images};
+  FileImages images = of.images(options);
+  const gltf::VertexAttributes any{true, true, false, {true, true, false, false}};
+  made->moves = movesOf(of.subject, any, impl.scene_lights, images, **language, options, {}, messages);
+  return made;
+}
+
+std::optional<Tuned> tune(const Scene& scene, size_t material, const Attributes& attributes,
+                          const Options& options, Messages& messages) {
+  const Graph graph = scene.graph(material, attributes, options, messages);
+  std::optional<Tuned> made = graph ? tune(graph, options, messages) : std::nullopt;
+  if (!made) return made;
+  const auto& impl = *scene.impl_;
+  const material::Material& of = impl.document.materials[material];
+  const auto language = libraryFor(options);
+  Options named = options;
+  if (!language || !resolveNames(**language, named)) return made;
+  FileImages images(impl.document.path, options, impl.bytes);
+  const preview::Mesh mesh = lod::meshOf(of, images, **language, messages);
+  made->moves =
+      movesOf(of, fromPublic(attributes), lightsOf(impl.document), images, **language, named, mesh, messages);
+  return made;
 }
 
 }  // namespace lacquer

@@ -1,6 +1,7 @@
 #include "cli/tune.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -46,12 +47,23 @@ namespace {
 void printTable(const Tuned& tuned) {
   fmt::print("{}: {} cycles on {} as it is\n\n", printable(tuned.name), tuned.plain, tuned.family);
   fmt::print("{:>10} {:>8} {:>7} {:>15} {:>8}\n", "error", "cycles", "saved", "approximations", "rounding");
+  const auto saved = [&](double cycles) { return tuned.plain > 0 ? 100 * (1 - cycles / tuned.plain) : 0; };
   for (const TunedForm& form : tuned.forms) {
-    const double saved = tuned.plain > 0 ? 100 * (1 - form.cycles / tuned.plain) : 0;
-    fmt::print("{:>10.2g} {:>8.0f} {:>5.0f} % {:>15} {:>8.2f}\n", form.error, form.cycles, saved,
+    fmt::print("{:>10.2g} {:>8.0f} {:>5.0f} % {:>15} {:>8.2f}\n", form.error, form.cycles, saved(form.cycles),
                form.approximations, form.growth);
   }
+  if (tuned.moves.empty()) return;
+  fmt::print("\nnodes computed at the vertices, by their difference in pictures\n\n");
+  fmt::print("{:>6} {:>8} {:>6} {:>8} {:>7} {:>8}  options\n", "dE", "dE 95 %", "FLIP", "cycles", "saved",
+             "vertices");
+  for (const TunedMove& move : tuned.moves) {
+    fmt::print("{:>6.2f} {:>8.2f} {:>6.3f} {:>8.0f} {:>5.0f} % {:>8.0f}  {}\n", move.error.delta_e,
+               move.error.delta_e_95, move.error.flip, move.cycles, saved(move.cost), move.vertex_cycles,
+               printable(fmt::format("{}", fmt::join(move.options, " "))));
+  }
 }
+
+json::Json spread(double mean, double p95) { return {{"mean", mean}, {"p95", p95}}; }
 
 void printJson(const Tuned& tuned) {
   json::Json forms = json::Json::array();
@@ -61,8 +73,21 @@ void printJson(const Tuned& tuned) {
                      {"error_growth", form.growth},
                      {"approximations", form.approximations}});
   }
-  const json::Json all = {
+  json::Json all = {
       {"name", tuned.name}, {"family", tuned.family}, {"of_cycles", tuned.plain}, {"forms", forms}};
+  json::Json moves = json::Json::array();
+  for (const TunedMove& move : tuned.moves) {
+    moves.push_back({{"simplify", move.simplify},
+                     {"options", move.options},
+                     {"shader", move.shader},
+                     {"error",
+                      {{"delta_e", spread(move.error.delta_e, move.error.delta_e_95)},
+                       {"flip", spread(move.error.flip, move.error.flip_95)}}},
+                     {"cycles", move.cycles},
+                     {"vertex_cycles", move.vertex_cycles},
+                     {"cost", move.cost}});
+  }
+  if (!moves.empty()) all["moves"] = moves;
   fmt::print("{}\n", json::dump(all, 2));
 }
 
@@ -82,8 +107,7 @@ std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messag
   const std::optional<size_t> material = scene ? scene.findMaterial(flags.material, messages) : std::nullopt;
   if (!material) return found;
   const std::vector<Attributes> uses = scene.uses(*material);
-  const Graph graph = scene.graph(*material, uses.empty() ? kUnusedAttributes : uses[0], options, messages);
-  return graph ? tune(graph, options, messages) : found;
+  return tune(scene, *material, uses.empty() ? kUnusedAttributes : uses[0], options, messages);
 }
 
 /// Writes the picture, never over what is read.

@@ -10,6 +10,7 @@
 #include "interface/interface.h"
 #include "lacquer/manifest.h"
 #include "lacquer/tools.h"
+#include "lod/geometry.h"
 #include "lod/report.h"
 #include "lod/share.h"
 #include "manifest/stale.h"
@@ -182,7 +183,7 @@ private:
       const auto& uses = input.document.uses[static_cast<size_t>(material->index)];
       if (!uses.empty()) attributes = uses[0];
       lights = lightsOf(input.document);
-      mesh = meshOf(*material, input.path, images);
+      mesh = lod::meshOf(*material, images, *language_, messages_);
     }
     // The default template and profile are named, which would build a graph.
     const Options& options = material == nullptr ? asked_ : options_;
@@ -212,38 +213,6 @@ private:
     if (const Result<bool> usable = makeFolder(lod_.output); !usable)
       return tl::make_unexpected(usable.error());
     return {};
-  }
-
-  /// The file's own geometry that has the material.
-  preview::Mesh meshOf(const material::Material& material, const std::string& file, FileImages& images) {
-    const gltf::Geometry geometry = images.geometry(static_cast<size_t>(material.index));
-    if (!geometry.left_out.empty()) {
-      report({{"geometry-left-out",
-               Severity::Note,
-               {{}, 0, 0, fmt::format("/materials/{}", material.index)},
-               fmt::format("levels are compared {} of the file's own geometry: {}",
-                           geometry.triangles.empty() ? "without any" : "with a part", geometry.left_out),
-               "the ball is among the pictures in any case",
-               {}}},
-             file, messages_);
-    }
-    preview::Mesh mesh;
-    mesh.triangles = geometry.triangles;
-    for (const gltf::Corner& corner : geometry.corners) {
-      eval::Point& point = mesh.vertices.emplace_back();
-      std::copy(corner.position.begin(), corner.position.end(), point.position.begin());
-      std::copy(corner.normal.begin(), corner.normal.end(), point.n.begin());
-      std::copy(corner.tangent.begin(), corner.tangent.end(), point.t.begin());
-      std::copy(corner.color.begin(), corner.color.end(), point.color0.begin());
-      for (size_t set = 0; set < 4; ++set)
-        std::copy(corner.uv[set].begin(), corner.uv[set].end(), point.uv[set].begin());
-    }
-    const Result<const material::Schema*> schema = language_->models.schema();
-    for (const material::Material::Number& number : material.numbers) {
-      if (schema && (*schema)->properties[number.property].decl->name == "doubleSided")
-        mesh.double_sided = number.value[0] != 0;
-    }
-    return mesh;
   }
 
   /// Everything that is worth to be tried, then the best of it with a few numbers fitted.

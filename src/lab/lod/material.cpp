@@ -292,7 +292,7 @@ double LodMaterial::costOf(const LevelFigures& figures) const {
 
 Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules, bool quarters) {
   std::vector<LevelFigures> figures(modules.size());
-  if (!cost::unavailable().empty()) {
+  if (given_.options.programs_model || !cost::unavailable().empty()) {
     for (size_t i = 0; i < modules.size(); ++i) {
       const lod::Estimate estimate = lod::estimate(modules[i]);
       figures[i].instructions = estimate.instructions;
