@@ -23,7 +23,7 @@ after(() => rmSync(parts, { recursive: true }));
 /** With room for one more bar below the picture. */
 const kTall = { ...kSmall, height: 460 };
 
-const kTypes = { SCALAR: 1, VEC3: 3, VEC4: 4, MAT4: 16 };
+const kTypes = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 /** A file of a square from -1 to 1 that shines in red, whose numbers accessor() takes in. */
 function squareFile(change) {
   const chunks = [];
@@ -249,6 +249,51 @@ test('a morph target moves what it is of, by the weights of the mesh, the node a
   assert.deepEqual(await seen(page, places), [false, true, false]);
 }, { size: kTall }));
 
+test('morph targets change colours and places in a picture', () => open([], async (page) => {
+  await reduced(page);
+  await show(page, squareFile((json, accessor) => {
+    const [primitive] = json.meshes[0].primitives;
+    json.materials = [
+      { doubleSided: true, pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 }, extensions: { KHR_materials_unlit: {} } },
+    ];
+    json.extensionsUsed = ['KHR_materials_unlit'];
+    primitive.attributes.COLOR_0 = accessor('VEC4', Array(4).fill([1, 0, 0, 1]).flat());
+    // Beyond 1 it ends.
+    primitive.targets = [{ COLOR_0: accessor('VEC4', Array(4).fill([-1, 5, 0, 0]).flat()) }, { COLOR_0: accessor('VEC3', Array(4).fill([-1, 0, 1]).flat()) }];
+    json.animations = [clip(accessor, 0, 'weights', [0, 1, 2, 3], 'SCALAR', [0, 0, 1, 0, 0, 1, 0, 0])];
+  }));
+  const color = async () => (await middle(page)).slice(0, 3).map((x) => (x > 200 ? 1 : x < 100 ? 0 : x)).join('');
+  assert.equal(await color(), '100');
+  await scrub(page, 1);
+  assert.equal(await color(), '010');
+  await scrub(page, 2);
+  assert.equal(await color(), '001');
+  await scrub(page, 3);
+  assert.equal(await color(), '100');
+  // A picture of red on the left and green on the right, of which the left half's middle is seen.
+  const bitmap = await page.evaluate(() => {
+    const canvas = document.createElement('canvas');
+    Object.assign(canvas, { width: 64, height: 64 });
+    const context = canvas.getContext('2d');
+    context.fillStyle = '#f00';
+    context.fillRect(0, 0, 32, 64);
+    context.fillStyle = '#0f0';
+    context.fillRect(32, 0, 32, 64);
+    return canvas.toDataURL('image/png');
+  });
+  await show(page, squareFile((json, accessor) => {
+    const [primitive] = json.meshes[0].primitives;
+    Object.assign(json, { images: [{ uri: bitmap }], textures: [{ source: 0 }], extensionsUsed: ['KHR_materials_unlit'] });
+    json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } }, extensions: { KHR_materials_unlit: {} } }];
+    primitive.attributes.TEXCOORD_0 = accessor('VEC2', Array(4).fill([0.25, 0.5]).flat());
+    primitive.targets = [{ TEXCOORD_0: accessor('VEC2', Array(4).fill([0.5, 0]).flat()) }];
+    json.animations = [clip(accessor, 0, 'weights', [0, 1], 'SCALAR', [0, 1])];
+  }));
+  assert.equal(await color(), '100');
+  await scrub(page, 1);
+  assert.equal(await color(), '010');
+}, { size: kTall }));
+
 test('an animation plays, stands and is stepped through by keys', () => open([], async (page) => {
   await show(page, squareFile((json, accessor) => {
     json.animations = [clip(accessor, 0, 'translation', [0, 60], 'VEC3', [0, 0, 0, 4, 0, 0])];
@@ -311,6 +356,11 @@ test('what is wrong with what moves is said, and the rest is drawn', () => open(
     json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', [5, 5, 5]) }];
     json.meshes[0].weights = [1];
   }), /targets\/0\/POSITION: accessor \d+ cannot be read as three numbers for each of 4 vertices/);
+  assert.match(await said((json, accessor) => {
+    json.meshes[0].primitives[0].attributes.TEXCOORD_0 = accessor('VEC2', Array(8).fill(0));
+    json.meshes[0].primitives[0].targets = [{ TEXCOORD_0: 0 }];
+    json.meshes[0].weights = [1];
+  }), /targets\/0\/TEXCOORD_0: accessor 0 cannot be read as two numbers for each of 4 vertices/);
   assert.match(await said(moved('translation', [0, 1], 'VEC3', [0, 0, 0])), /\/animations\/0\/channels\/0: the sampler's output has 3 numbers, 3 in each element: 2 times by LINEAR need 6/);
   assert.match(await said(moved('translation', [1, 0], 'VEC3', [0, 0, 0, 1, 1, 1])), /cannot be read as times/);
   assert.match(await said(moved('rotation', [0, 1], 'VEC3', [0, 0, 0, 1, 1, 1])), /need 8/);
@@ -398,7 +448,8 @@ function playAll({ moves, drawables }) {
 test('whatever is in the place of whatever value, all clips play', () => {
   const whole = squareFile((json, accessor) => {
     bend(json, accessor);
-    json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', Array(12).fill(2)), NORMAL: accessor('VEC3', Array(12).fill(1)) }];
+    json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', Array(12).fill(2)), NORMAL: accessor('VEC3', Array(12).fill(1)), COLOR_0: accessor('VEC3', Array(12).fill(1)) }];
+    json.meshes[0].primitives[0].attributes.COLOR_0 = accessor('VEC4', Array(16).fill(1));
     json.meshes[0].weights = [0.5];
     json.nodes.push({ mesh: 0, rotation: [0, 0, 0, 1], scale: [1, 1, 1], matrix: undefined });
     json.animations = [
