@@ -2,6 +2,7 @@
 // is edited in place.
 import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
 import { Around } from './around';
+import { Cameras } from './cameras';
 import { connectCode, hexOf, selectTerm, showCode } from './code';
 import { fillOthers, fillVariants, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
@@ -43,6 +44,7 @@ export class Page {
   private readonly nodeText: NodeText;
   readonly files: Files;
   readonly around: Around;
+  readonly cameras: Cameras;
   private readonly player: Player;
   graphJson: GraphJson | null = null;
   selected = '';
@@ -77,10 +79,12 @@ export class Page {
     this.connectControls();
     this.files = new Files(this);
     this.around = new Around(this);
+    this.cameras = new Cameras(this);
     this.player = new Player(this);
     connectPointer(viewport, {
       turnAround: (angle, done) => this.around.turnBy(angle, done), pick: (x, y) => this.pick(x, y),
       play: () => this.player.play(), step: (by) => this.player.step(by),
+      byHand: () => this.cameras.leave(),
     });
     connectCode(this);
   }
@@ -134,6 +138,7 @@ export class Page {
     byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
     fillVariants(byId<HTMLSelectElement>('variant'), of);
+    this.cameras.open();
     this.player.open();
     viewport.setScene(of.drawables);
     this.othersOf = '';
@@ -144,7 +149,7 @@ export class Page {
     else this.showNoMaterial();
     this.compileOthers();
     if (of.said.length > 0) this.note(of.said.length === 1 ? of.said[0].text : `${of.said[0].text} (and ${of.said.length - 1} more)`);
-    for (const text of of.moves.said) this.noteMore(text);
+    for (const text of [...of.moves.said, ...of.cameras.said]) this.noteMore(text);
     if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
     this.files.changed();
   }
@@ -676,7 +681,6 @@ export class Page {
       this.compileOthers();
       this.viewport.redraw();
     });
-    this.on('whole', 'click', () => this.viewport.fit());
     this.on('save-picture', 'click', () => void this.savePicture().catch((error: unknown) => this.fail(error)));
     this.on('exposure', 'input', () => {
       this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);

@@ -37,6 +37,8 @@ export class Moves {
   readonly clips: Clip[];
   /** What is wrong in the file. */
   readonly said: string[] = [];
+  /** Numbers of lamps and cameras that the clip has now, by their pointers. */
+  readonly moved = new Map<string, number[]>();
   private readonly places: Place[] = [];
   /** The nodes, each behind its parent. */
   private readonly order: number[] = [];
@@ -224,12 +226,18 @@ export class Moves {
       this.touched.add(node);
       dirty.add(node);
     }
+    this.moved.clear();
+    for (const channel of clip?.properties ?? []) this.moved.set(channel.property, valueAt(channel, seconds, false));
     for (const index of dirty) {
       const { now, matrix } = this.places[index];
       if (now) matrix.set(compose(now.translation, now.rotation, now.scale));
     }
     this.carry(dirty);
     for (const { node, bent } of this.bendings) bent.bend(weights.get(node) ?? null);
+  }
+  /** Where a node is in the world. */
+  world(node: number): Mat4 | undefined {
+    return this.places[node]?.world;
   }
   private rest({ now, rest }: Place): void {
     if (now && rest) Object.assign(now, rest);

@@ -294,6 +294,119 @@ test('morph targets change colours and places in a picture', () => open([], asyn
   assert.equal(await color(), '010');
 }, { size: kTall }));
 
+/** A clip that moves values by their pointers: lists of numbers at the seconds from 0 on. */
+const pointing = (accessor, moved) => ({
+  samplers: Object.values(moved).map(([type, values]) => ({ input: accessor('SCALAR', Array.from({ length: values.length / kTypes[type] }, (_, i) => i)), output: accessor(type, values) })),
+  channels: Object.keys(moved).map((pointer, sampler) => ({ sampler, target: { path: 'pointer', extensions: { KHR_animation_pointer: { pointer } } } })),
+});
+/** The colour of a place, as seen() has them: which of red, green and blue are bright. */
+const colorAt = (page, x, y) => page.evaluate(([x, y]) => {
+  const { viewport } = window.lacquerPage;
+  const pixels = viewport.pixels();
+  const { width, height } = viewport.canvas;
+  const at = 4 * (Math.floor((0.5 - y / 6) * height) * width + Math.floor(width / 2 + (x / 6) * height));
+  return [...pixels.subarray(at, at + 3)].map((x) => (x > 150 ? 1 : x < 60 ? 0 : x)).join('');
+}, [x, y]);
+
+test("the file's lamps go with their nodes and have the clip's colours", () => open([], async (page) => {
+  await reduced(page);
+  const kLights = '/extensions/KHR_lights_punctual/lights';
+  await show(page, squareFile((json, accessor) => {
+    json.materials = [{ pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } }];
+    json.extensions = { KHR_lights_punctual: { lights: [{ type: 'point', color: [1, 0, 0], intensity: 3 }, { type: 'spot', intensity: 0, spot: { innerConeAngle: 0.1, outerConeAngle: 0.2 } }] } };
+    json.extensionsUsed = ['KHR_lights_punctual', 'KHR_animation_pointer'];
+    json.nodes = [{ mesh: 0 }, { children: [2] }, { extensions: { KHR_lights_punctual: { light: 0 } }, translation: [0, 0, 1] }, { extensions: { KHR_lights_punctual: { light: 1 } }, translation: [0, 0, 2] }];
+    json.scenes[0].nodes = [0, 1, 3];
+    json.animations = [
+      clip(accessor, 1, 'translation', [0, 1], 'VEC3', [0, 0, 0, 0, 0, -9]),
+      pointing(accessor, { [`${kLights}/0/color`]: ['VEC3', [1, 0, 0, 0, 1, 0]], [`${kLights}/0/intensity`]: ['SCALAR', [3, 3]] }),
+      pointing(accessor, { [`${kLights}/1/intensity`]: ['SCALAR', [12, 12]], [`${kLights}/1/color`]: ['VEC3', [0, 0, 1, 0, 0, 1]], [`${kLights}/1/spot/innerConeAngle`]: ['SCALAR', [0, 0.9]], [`${kLights}/1/spot/outerConeAngle`]: ['SCALAR', [0.1, 1]], [`${kLights}/0/intensity`]: ['SCALAR', [0, 0]] }),
+    ];
+  }));
+  assert.equal(await page.evaluate(() => window.lacquerPage.document.moves.said.join()), '');
+  await page.selectOption('#lamps', 'own');
+  await seen(page, []);
+  assert.equal(await colorAt(page, 0, 0), '100');
+  await scrub(page, 1);
+  assert.equal(await colorAt(page, 0, 0), '000'); // behind it
+  await scrub(page, 0);
+  assert.equal(await colorAt(page, 0, 0), '100');
+  await page.selectOption('#clip', '1');
+  await scrub(page, 1);
+  assert.equal(await colorAt(page, 0, 0), '010');
+  await page.selectOption('#clip', '2');
+  await scrub(page, 0);
+  assert.deepEqual([await colorAt(page, 0, 0), await colorAt(page, 0.9, 0)], ['001', '000']);
+  await scrub(page, 1);
+  assert.deepEqual([await colorAt(page, 0, 0), await colorAt(page, 0.9, 0)], ['001', '001']);
+  await page.selectOption('#clip', '');
+  assert.equal(await colorAt(page, 0, 0), '100');
+}, { size: kTall }));
+
+test('the picture is seen by a camera of the file, which moves, until a hand turns it', () => open([], async (page) => {
+  await reduced(page);
+  await show(page, squareFile((json, accessor) => {
+    json.cameras = [
+      { type: 'perspective', perspective: { yfov: 2 * Math.atan(0.5), znear: 0.1 } },
+      { type: 'orthographic', name: 'flat', orthographic: { xmag: 0.5, ymag: 3, znear: 0, zfar: 20 } },
+      { type: 'perspective', perspective: { yfov: 0, znear: 0.1 } },
+    ];
+    json.nodes = [{ mesh: 0 }, { children: [2], name: 'arm' }, { camera: 0, translation: [0, 0, 6], scale: [2, 2, 2], name: 'eye' }, { camera: 1, translation: [1, 0, 6] }, { camera: 2 }];
+    json.scenes[0].nodes = [0, 1, 3, 4];
+    json.extensionsUsed = ['KHR_animation_pointer'];
+    json.animations = [
+      clip(accessor, 1, 'translation', [0, 1], 'VEC3', [0, 0, 0, 2, 0, 0]),
+      pointing(accessor, { '/cameras/0/perspective/yfov': ['SCALAR', [2 * Math.atan(0.5), 2 * Math.atan(1)]], '/cameras/1/orthographic/ymag': ['SCALAR', [3, 6]] }),
+    ];
+  }));
+  const red = async (...places) => {
+    const colors = [];
+    for (const x of places) colors.push(await colorAt(page, x, 0) === '100');
+    return colors;
+  };
+  assert.deepEqual(await page.locator('#camera option').allTextContents(), ['Turned by hand', 'eye', 'flat']);
+  assert.match(await page.evaluate(() => window.lacquerPage.document.cameras.said.join()), /\/cameras\/2: yfov is 0, and must be between 0 and pi; it is left out/);
+  // Six units from the lower edge to the upper one.
+  await page.selectOption('#camera', { label: 'eye' });
+  assert.deepEqual(await red(-0.9, 0.9, -1.1, 1.1), [true, true, false, false]);
+  await scrub(page, 1);
+  assert.deepEqual(await red(-2.9, -1.1, -0.9, 0), [true, true, false, false]);
+  await scrub(page, 0);
+  await page.selectOption('#clip', '1');
+  await scrub(page, 1);
+  assert.deepEqual(await red(-0.4, 0.4, -0.6, 0.6), [true, true, false, false]);
+  await scrub(page, 0);
+  await page.selectOption('#camera', { label: 'flat' });
+  assert.deepEqual(await red(-1.9, -0.1, -2.1, 0.1), [true, true, false, false]);
+  await scrub(page, 1);
+  assert.deepEqual(await red(-0.9, -0.1, -1.1, 0.1), [true, true, false, false]);
+  // A click chooses what this camera sees, and a drag begins where the camera is.
+  const aspect = await page.evaluate(() => window.lacquerPage.viewport.canvas.width / window.lacquerPage.viewport.canvas.height);
+  const at = (x) => page.evaluate((x) => window.lacquerPage.viewport.materialAt(x, 0), x / 3 / aspect);
+  assert.deepEqual([await at(-0.5), await at(0.2)], [0, undefined]);
+  await page.selectOption('#camera', { label: 'eye' });
+  await page.selectOption('#clip', '');
+  const eye = await page.evaluate(() => window.lacquerPage.viewport.eye());
+  assert.deepEqual(eye, [0, 0, 6]);
+  await page.focus('#viewport');
+  await page.keyboard.press('+');
+  assert.equal(await page.inputValue('#camera'), '');
+  const { orbit, middle: between, radius } = await page.evaluate(() => {
+    const { orbit, middle, radius } = window.lacquerPage.viewport;
+    return { orbit, middle, radius };
+  });
+  assert.deepEqual([orbit.yaw, orbit.pitch], [0, 0]);
+  assert.ok(Math.abs(orbit.distance * radius - 0.9 * (6 - between[2])) < 1e-3, JSON.stringify([orbit, between, radius]));
+  await page.keyboard.press('f');
+  await painted(page);
+  // The ball is no part of the file.
+  await page.selectOption('#camera', { label: 'flat' });
+  await page.selectOption('#shape', 'ball');
+  assert.equal(await colorAt(page, 0, 0), '100');
+  await drop(page, [['plain.gltf', squareFile(() => undefined)]]);
+  assert.equal(await page.isVisible('#camera'), false);
+}, { size: kTall }));
+
 test('an animation plays, stands and is stepped through by keys', () => open([], async (page) => {
   await show(page, squareFile((json, accessor) => {
     json.animations = [clip(accessor, 0, 'translation', [0, 60], 'VEC3', [0, 0, 0, 4, 0, 0])];
