@@ -407,6 +407,35 @@ test('the picture is seen by a camera of the file, which moves, until a hand tur
   assert.equal(await page.isVisible('#camera'), false);
 }, { size: kTall }));
 
+test('sparse accessors are drawn: those of a morph target alone, and those that change another one', () => open([], async (page) => {
+  await reduced(page);
+  const file = (change) => squareFile((json, accessor) => {
+    /** Vertices 1 and 2 of a list that has four. */
+    const sparse = (index, numbers, componentType = 5123) => {
+      const [places, values] = [accessor('SCALAR', [1, 2], 5123), accessor('VEC3', numbers)].map((each) => json.accessors[each].bufferView);
+      const of = { count: 2, indices: { bufferView: places, componentType }, values: { bufferView: values } };
+      if (index < 0) return json.accessors.push({ componentType: 5126, count: 4, type: 'VEC3', sparse: of }) - 1;
+      json.accessors[index].sparse = of;
+      return index;
+    };
+    change(json, sparse);
+  });
+  const wide = [[-0.5, 0], [2, 0]];
+  await show(page, file((json, sparse) => {
+    json.meshes[0].primitives[0].targets = [{ POSITION: sparse(-1, [2, 0, 0, 2, 0, 0]) }];
+    json.meshes[0].weights = [1];
+  }));
+  assert.deepEqual(await seen(page, wide), [true, true]);
+  assert.equal(await page.evaluate(() => window.lacquerPage.document.moves.said.join()), '');
+  await show(page, file((json, sparse) => sparse(0, [3, -1, 0, 3, 1, 0])));
+  assert.deepEqual(await seen(page, wide), [true, true]);
+  // What cannot be read leaves its primitive out.
+  for (const wrong of [{ componentType: 5126 }, { byteOffset: 2 }, { bufferView: 99 }]) {
+    await show(page, file((json, sparse) => Object.assign(json.accessors[sparse(0, [3, -1, 0, 3, 1, 0])].sparse.indices, wrong)));
+    assert.equal(await page.evaluate(() => window.lacquerPage.document.drawables.length), 0);
+  }
+}, { size: kTall }));
+
 test('an animation plays, stands and is stepped through by keys', () => open([], async (page) => {
   await show(page, squareFile((json, accessor) => {
     json.animations = [clip(accessor, 0, 'translation', [0, 60], 'VEC3', [0, 0, 0, 4, 0, 0])];
