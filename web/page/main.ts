@@ -12,6 +12,7 @@ import { Document, type Input } from './document';
 import { byId, download, h, tell } from './dom';
 import { Files } from './files';
 import { fromBase64 } from '../src/gltf';
+import { Generated } from './generated';
 import { GpuPainter } from './gpu';
 import { GraphPane } from './graph';
 import { kOwnNodes, NodeText } from './nodetext';
@@ -46,6 +47,7 @@ export class Page {
   readonly around: Around;
   readonly cameras: Cameras;
   private readonly player: Player;
+  private readonly generated: Generated;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
@@ -76,6 +78,7 @@ export class Page {
     this.graph = new GraphPane(this);
     byId('version').textContent = lacquer.version;
     this.fillSelects();
+    this.generated = new Generated(this.nodes, () => this.showText());
     this.connectControls();
     this.files = new Files(this);
     this.around = new Around(this);
@@ -382,9 +385,12 @@ export class Page {
     return JSON.stringify([this.of!.file.name, this.of!.material, byId('id').textContent, rest, kinds]);
   }
 
+  private textOptions(target: string): Options {
+    return { ...this.generated.options(this.options()), targets: [target] };
+  }
   /** The text of the chosen target and stage, as `lacquer gen` writes it. */
   text(target: string, stage: 'vertex' | 'fragment'): string {
-    return withShader(this.lacquer, this.of!, { ...this.options(), targets: [target] }, [], (shader) =>
+    return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader) =>
       target === 'spirv' ? hexOf(shader.spirv(stage)) : shader.text(target, stage),
     );
   }
@@ -392,7 +398,7 @@ export class Page {
   /** The file that `lacquer gen` writes of it; null where the material has an error. */
   bytes(target: string, stage: 'vertex' | 'fragment'): Uint8Array<ArrayBuffer> | null {
     try {
-      return withShader(this.lacquer, this.of!, { ...this.options(), targets: [target] }, [], (shader) =>
+      return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader) =>
         target === 'spirv' ? new Uint8Array(shader.spirv(stage).slice().buffer) : new TextEncoder().encode(shader.text(target, stage)),
       );
     } catch (error) {
@@ -402,19 +408,30 @@ export class Page {
   }
 
   /** What an application needs beside the texts: the manifest's entry, the graph, the bytes of the material's block. */
-  described(): { interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
-    return withShader(this.lacquer, this.of!, this.options(), [], (shader, graph) => ({
+  described(): { id: string; interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
+    return withShader(this.lacquer, this.of!, this.textOptions('essl'), [], (shader, graph) => ({
+      id: shader.id,
       interface: shader.interface,
       graph: graph.toText(),
       block: new Uint8Array(shader.packGraph(graph)),
     }));
   }
 
+  /** The same; null, and a message, where the material has an error. */
+  describedOrSaid(): ReturnType<Page['described']> | null {
+    try {
+      return this.described();
+    } catch (error) {
+      this.fail(error);
+      return null;
+    }
+  }
+
   private showText(): void {
     const target = byId<HTMLSelectElement>('target').value;
     const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
     const code = byId('code');
-    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${target} ${stage}`)) return;
+    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${JSON.stringify(this.textOptions(target))} ${stage}`)) return;
     try {
       const text = this.text(target, stage);
       showCode(code, text, (term) => this.select(term, 'code'));
@@ -422,7 +439,8 @@ export class Page {
       if (this.selected) this.showTerm(true);
     } catch (error) {
       if (!(error instanceof LacquerError)) throw error;
-      code.replaceChildren();
+      code.replaceChildren(error.message);
+      byId('size').textContent = '';
     }
   }
 
