@@ -4,7 +4,7 @@ import { addEnvironment, kEnvironments } from './environment';
 import { readExr } from './exr';
 import { radianceOf, readHdr } from './hdr';
 import { Lamps } from './lamps';
-import { fileLights, kStudioLights, type Light } from './lights';
+import { kStudioLights, type Light } from './lights';
 import type { Page } from './main';
 import { around, kStage, lightsOf, type Lamp, type Stage } from './stage';
 import type { Viewport } from './viewport';
@@ -13,7 +13,6 @@ import type { Viewport } from './viewport';
 const kOwnEnvironment = 128;
 
 export class Around {
-  private ownLights: Light[] = [];
   /** What was chosen before the lamps that are placed by hand. */
   private before = 'studio';
   private readonly lamps: Lamps;
@@ -49,10 +48,10 @@ export class Around {
 
   /** Of another document. */
   open(): void {
-    this.ownLights = fileLights(this.page.document!.file);
+    const { count } = this.page.document!.lights;
     const lamps = byId<HTMLSelectElement>('lamps');
-    lamps.querySelector<HTMLOptionElement>('[value=own]')!.disabled = this.ownLights.length === 0;
-    if (this.ownLights.length === 0) {
+    lamps.querySelector<HTMLOptionElement>('[value=own]')!.disabled = count === 0;
+    if (count === 0) {
       if (this.before === 'own') this.before = 'studio';
       if (lamps.value === 'own') lamps.value = 'studio';
     }
@@ -66,12 +65,21 @@ export class Around {
     if (this.stage.placed) lamps.value = 'placed';
     else if (lamps.value === 'placed') lamps.value = this.before;
     if (lamps.value !== 'placed') this.before = lamps.value;
-    const lights: Record<string, Light[]> = { studio: kStudioLights, own: this.ownLights, none: [] };
+    const lights: Record<string, Light[]> = { studio: kStudioLights, own: this.ownLights(), none: [] };
     viewport.lights = lights[lamps.value] ?? lightsOf(this.stage);
     viewport.turn = this.stage.turn;
     byId<HTMLInputElement>('turn').valueAsNumber = Math.round((this.stage.turn * 180) / Math.PI);
     this.lamps.show();
     viewport.redraw();
+  }
+
+  private ownLights(): Light[] {
+    const of = this.page.document;
+    return of ? of.lights.at(of.moves) : [];
+  }
+  /** The file's own have moved. */
+  follow(): void {
+    if (byId<HTMLSelectElement>('lamps').value === 'own') this.page.viewport.lights = this.ownLights();
   }
 
   private choose(): void {

@@ -1,4 +1,5 @@
-// Positions, normals and tangents as morph targets change them and joints of a skin take them along, in that order.
+// Positions, normals, tangents, texture coordinates and colours as morph targets change them; the first three then go with the joints
+// of a skin.
 import type { Drawable, Numbers } from '../src/gltf';
 import { isNear } from '../src/json';
 import { facetNormals } from '../src/math';
@@ -11,16 +12,22 @@ export interface Skin {
   matrices: Float32Array;
   moved: boolean;
 }
-/** What a morph target adds. */
-export type Target = Partial<Record<'POSITION' | 'NORMAL' | 'TANGENT', Float32Array>>;
+/** What a morph target adds, by the attributes' names. */
+export type Target = ReadonlyMap<string, Numbers>;
 
 const kBent = ['POSITION', 'NORMAL', 'TANGENT'] as const;
+/** What a target may add to beside: those that shaders read. */
+const kFlat = ['TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'COLOR_0'];
+/** Numbers of a vertex that a target may have, at least and at most. */
+const kSizes = { POSITION: [3, 3], NORMAL: [3, 3], TANGENT: [3, 3], COLOR_0: [3, 4] } as Record<string, [number, number]>;
+export const sizesOf = (name: string): [number, number] => kSizes[name] ?? [2, 2];
 
 export class Bent {
   /** Those that are drawn: the bent ones are written anew. */
   readonly attributes: Drawable['attributes'];
   private readonly at: Drawable['attributes'];
   private readonly indices: Uint32Array;
+  private readonly names: string[];
   private last: number[];
 
   /** `bare`: it has no normals of its own, they are those of its triangles. */
@@ -28,18 +35,19 @@ export class Bent {
     { attributes, indices }: Drawable, private readonly bare: boolean, readonly skin: Skin | null,
     private readonly sets: [Numbers, Numbers][], private readonly targets: Target[], private readonly rest: number[],
   ) {
+    this.names = Bent.names(attributes, new Set(targets.flatMap((target) => [...target.keys()])));
     this.at = attributes;
     this.indices = indices;
     this.last = rest;
     this.attributes = new Map(attributes);
-    for (const name of kBent) {
-      const of = attributes.get(name);
-      if (of) this.attributes.set(name, { data: of.data.slice(), size: of.size, version: 0 });
+    for (const name of this.names) {
+      const of = attributes.get(name)!;
+      this.attributes.set(name, { data: of.data.slice(), size: of.size, version: 0 });
     }
   }
-  /** How many numbers are made of a primitive. */
-  static numbers(attributes: Drawable['attributes']): number {
-    return kBent.reduce((sum, name) => sum + (attributes.get(name)?.data.length ?? 0), 0);
+  /** What is bent of a primitive by targets that have attributes of these names. */
+  static names(attributes: Drawable['attributes'], targets: Set<string>): string[] {
+    return [...kBent, ...kFlat.filter((name) => targets.has(name))].filter((name) => attributes.has(name));
   }
 
   /** With these weights of the targets, or those at rest; where nothing has changed, all stays. */
@@ -48,30 +56,27 @@ export class Bent {
     const same = this.targets.length === 0 || weights.every((weight, i) => weight === this.last[i]);
     if (!anew && same && !this.skin?.moved) return;
     this.last = weights;
-    for (const name of kBent) this.add(name, weights);
+    for (const name of this.names) this.add(name, weights);
     const position = this.attributes.get('POSITION')!;
     if (this.skin) this.follow(this.skin);
     // A place that is none would take all others out of sight.
     const { data } = this.at.get('POSITION')!;
     for (let i = 0; i < data.length; ++i) if (!isNear(position.data[i])) position.data[i] = data[i];
     if (this.bare) this.attributes.get('NORMAL')!.data.set(facetNormals(position.data, this.indices));
-    for (const name of kBent) {
-      const of = this.attributes.get(name);
-      if (of) of.version = of.version! + 1;
-    }
+    for (const name of this.names) ++this.attributes.get(name)!.version!;
   }
 
-  private add(name: (typeof kBent)[number], weights: number[]): void {
-    const [of, rest] = [this.attributes.get(name), this.at.get(name)];
-    if (!of || !rest) return;
-    const { data, size } = of;
-    data.set(rest.data);
+  private add(name: string, weights: number[]): void {
+    const { data, size } = this.attributes.get(name)!;
+    data.set(this.at.get(name)!.data);
     this.targets.forEach((target, t) => {
       const by = weights[t] ?? 0;
-      const change = target[name];
+      const change = target.get(name);
       if (by === 0 || !change) return;
-      for (let v = 0, i = 0; i < change.length; v += size, i += 3) for (let k = 0; k < 3; ++k) data[v + k] += by * change[i + k];
+      const most = Math.min(change.size, size);
+      for (let v = 0, i = 0; i < change.data.length; v += size, i += change.size) for (let k = 0; k < most; ++k) data[v + k] += by * change.data[i + k];
     });
+    if (name === 'COLOR_0') for (let i = 0; i < data.length; ++i) data[i] = Math.min(Math.max(data[i], 0), 1);
   }
 
   /** Each vertex by the sum of its joints' matrices; normals by the inverse transpose, but for its length. */

@@ -23,12 +23,17 @@ export interface MaterialChannel extends Curve {
   material: number;
   pointer: string;
 }
+/** Numbers of a lamp or a camera, by their pointer. */
+export interface PropertyChannel extends Curve {
+  property: string;
+}
 export interface Clip {
   name: string;
   /** Seconds. */
   duration: number;
   channels: Channel[];
   materials: MaterialChannel[];
+  properties: PropertyChannel[];
 }
 
 /** Of all clips of a file together; more are left out. */
@@ -80,7 +85,10 @@ export function valueAt({ times, values, size, mode }: Curve, seconds: number, t
   return length > 1e-12 ? to.map((x) => x / length) : [0, 0, 0, 1];
 }
 
-type Target = { node: number; part: Part } | { material: number; pointer: string };
+type Target = { node: number; part: Part } | { material: number; pointer: string } | { property: string; size: number };
+
+/** What can be moved of lamps and cameras, by the lists that have them. */
+const kProperties = /^\/(?:extensions\/KHR_lights_punctual\/(lights)|(cameras))\/(\d+)\/(color|intensity|range|spot\/(?:inner|outer)ConeAngle|perspective\/(?:aspectRatio|yfov|zfar|znear)|orthographic\/(?:xmag|ymag|zfar|znear))$/;
 
 /** Reads the clips of a file; what is wrong with a channel leaves it out and is said. */
 export class ClipReader {
@@ -94,12 +102,12 @@ export class ClipReader {
   clips(): Clip[] {
     const read: Clip[] = [];
     list(this.from.file.json.animations).forEach((animation, i) => {
-      const clip: Clip = { name: String(animation?.name ?? '') || `animation ${i}`, duration: 0, channels: [], materials: [] };
+      const clip: Clip = { name: String(animation?.name ?? '') || `animation ${i}`, duration: 0, channels: [], materials: [], properties: [] };
       list(animation?.channels).forEach((channel, k) => {
         if (this.room === 0) return;
         this.add(clip, animation, channel, `/animations/${i}/channels/${k}`);
       });
-      if (clip.channels.length + clip.materials.length > 0) read.push(clip);
+      if (clip.channels.length + clip.materials.length + clip.properties.length > 0) read.push(clip);
     });
     if (this.room === 0) this.say(`the animations have more than ${kMostChannels} channels: the others are left out`);
     return read;
@@ -115,7 +123,8 @@ export class ClipReader {
     --this.room;
     clip.duration = Math.max(clip.duration, curve.times[curve.times.length - 1]);
     if ('node' in target) clip.channels.push({ ...curve, ...target });
-    else clip.materials.push({ ...curve, ...target });
+    else if ('material' in target) clip.materials.push({ ...curve, ...target });
+    else clip.properties.push({ ...curve, property: target.property });
   }
 
   /** What a channel moves; a text that says what is wrong with it. */
@@ -126,6 +135,12 @@ export class ClipReader {
       if (typeof pointer !== 'string') return 'its target has the path "pointer" and no KHR_animation_pointer with a pointer';
       const material = /^\/materials\/(\d+)\//.exec(pointer);
       if (material) return item(this.from.file.json.materials, Number(material[1])) ? { material: Number(material[1]), pointer } : `${pointer} leads to no material`;
+      const [property, lights, , index, name] = kProperties.exec(pointer) ?? [];
+      if (property) {
+        const { cameras, extensions } = this.from.file.json;
+        if (!item(lights ? extensions?.KHR_lights_punctual?.lights : cameras, Number(index))) return `${pointer} leads to no ${lights ? 'lamp' : 'camera'}`;
+        return { property, size: name === 'color' ? 3 : 1 };
+      }
       const part = /^\/nodes\/(\d+)\/(translation|rotation|scale|weights)$/.exec(pointer);
       if (!part) return null;
       node = Number(part[1]);
@@ -150,7 +165,7 @@ export class ClipReader {
     const read = once(this.values, sampler.output, () => this.valuesOf(sampler.output));
     if (!read) return `the sampler's output, accessor ${JSON.stringify(sampler.output)}, cannot be read as numbers`;
     const { data: values } = read;
-    const size = 'pointer' in target ? read.size : target.part === 'weights' ? this.weights(target.node) : kParts.get(target.part)!;
+    const size = 'pointer' in target ? read.size : 'property' in target ? target.size : target.part === 'weights' ? this.weights(target.node) : kParts.get(target.part)!;
     const needed = times.length * size * (mode === 'CUBICSPLINE' ? 3 : 1);
     if (values.length !== needed || ('part' in target && target.part !== 'weights' && read.size !== size))
       return `the sampler's output has ${values.length} numbers, ${read.size} in each element: ${times.length} times by ${mode} need ${needed}`;

@@ -72,7 +72,7 @@ const endingOf = (target: string, stage: Stage): string =>
   kWhole[target] ?? `${stage === 'fragment' ? 'frag' : 'vert'}.${kEndings[target] ?? 'txt'}`;
 
 /** All targets' texts in the folders of `lacquer gen`, what is bound to them, and the graph; null where the material has an error. */
-function folderOf(page: Page, id: string): Uint8Array<ArrayBuffer> | null {
+function folderOf(page: Page, { id, interface: about, graph, block }: ReturnType<Page['described']>): Uint8Array<ArrayBuffer> | null {
   const files: Zippable = {};
   for (const { value: target } of byId<HTMLSelectElement>('target').options) {
     for (const stage of ['vertex', 'fragment'] as const) {
@@ -82,7 +82,6 @@ function folderOf(page: Page, id: string): Uint8Array<ArrayBuffer> | null {
     }
   }
   const utf8 = new TextEncoder();
-  const { interface: about, graph, block } = page.described();
   files['interface.json'] = utf8.encode(`${JSON.stringify(about, null, 2)}\n`);
   files['graph.json'] = utf8.encode(graph);
   if (block.length > 0) files['material.bin'] = block;
@@ -102,14 +101,13 @@ export function connectCode(page: Page): void {
   byId('copy-code').addEventListener('click', () => void copy(byId('code').textContent ?? '').then((done) => say(done ? 'copied' : 'the browser lets nothing be copied')));
   byId('download-code').addEventListener('click', () => {
     const { target, stage } = chosen();
-    const name = `${byId('id').textContent}.${endingOf(target, stage)}`;
     const bytes = page.bytes(target, stage);
-    if (bytes) download(name, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
+    if (bytes) download(`${page.described().id}.${endingOf(target, stage)}`, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
   });
   byId('download-folder').addEventListener('click', () => {
-    const id = byId('id').textContent ?? '';
-    const bytes = folderOf(page, id);
-    if (bytes) download(`${id}.zip`, bytes, 'application/zip');
+    const about = page.describedOrSaid();
+    const bytes = about && folderOf(page, about);
+    if (bytes) download(`${about.id}.zip`, bytes, 'application/zip');
   });
 }
 

@@ -37,6 +37,8 @@ interface Acts {
   play(): void;
   /** By so many pictures of it. */
   step(by: number): void;
+  /** Before the picture is turned, moved or brought nearer. */
+  byHand(): void;
 }
 
 /** What a mouse, fingers and keys do on either canvas: a drag turns the picture, with Shift what is around; with Ctrl, the right button
@@ -44,22 +46,33 @@ interface Acts {
 export function connectPointer(viewport: Viewport, acts: Acts): void {
   const { orbit } = viewport;
   const turn = (x: number, y: number) => {
+    acts.byHand();
     orbit.yaw -= x;
     orbit.pitch = Math.min(Math.max(orbit.pitch + y, -1.5), 1.5);
     viewport.redraw();
   };
   const near = (by: number) => {
+    acts.byHand();
     orbit.distance = Math.min(Math.max(orbit.distance * by, 1.2), 20);
     viewport.redraw();
   };
+  const pan = (right: number, up: number) => {
+    acts.byHand();
+    viewport.pan(right, up);
+  };
+  const whole = () => {
+    acts.byHand();
+    viewport.fit();
+  };
+  byId('whole').addEventListener('click', whole);
   const steps: Record<string, () => void> = {
     ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
-    '+': () => near(0.9), '-': () => near(1.1), f: () => viewport.fit(), F: () => viewport.fit(),
+    '+': () => near(0.9), '-': () => near(1.1), f: whole, F: whole,
     ' ': () => acts.play(), ',': () => acts.step(-1), '.': () => acts.step(1),
   };
   const shifted: Record<string, () => void> = { ArrowLeft: () => acts.turnAround(-0.1, false), ArrowRight: () => acts.turnAround(0.1, false) };
   const held: Record<string, () => void> = {
-    ArrowLeft: () => viewport.pan(-0.1, 0), ArrowRight: () => viewport.pan(0.1, 0), ArrowUp: () => viewport.pan(0, 0.1), ArrowDown: () => viewport.pan(0, -0.1),
+    ArrowLeft: () => pan(-0.1, 0), ArrowRight: () => pan(0.1, 0), ArrowUp: () => pan(0, 0.1), ArrowDown: () => pan(0, -0.1),
   };
   for (const canvas of [byId('viewport'), byId('viewport-gpu')]) {
     const down = new Map<number, { x: number; y: number }>();
@@ -91,7 +104,7 @@ export function connectPointer(viewport: Viewport, acts: Acts): void {
       const { x, y, apart } = span();
       const [across, along] = [x - before.x, y - before.y];
       gone += Math.hypot(across, along);
-      if (down.size === 2 || panning) viewport.pan((-2 * across) / canvas.clientHeight, (2 * along) / canvas.clientHeight);
+      if (down.size === 2 || panning) pan((-2 * across) / canvas.clientHeight, (2 * along) / canvas.clientHeight);
       else if (turning) acts.turnAround(across / 150, false);
       else turn(across / 150, along / 150);
       if (down.size === 2) near(Math.max(before.apart, 1) / Math.max(apart, 1));

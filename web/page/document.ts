@@ -3,9 +3,11 @@ import type { Attribute, Lacquer, Message } from '../src/index';
 import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
 import { item, list } from '../src/json';
 import { asGltf, isDocument } from './foreign';
+import { FileLights } from './lights';
 import { Moves } from './moves';
 import { kOwnNodes } from './nodetext';
 import { kStage, stageOf, type Stage } from './stage';
+import { FileCameras } from './view';
 
 export interface Input {
   name: string;
@@ -32,6 +34,8 @@ export class Document {
   readonly file: GltfFile;
   readonly drawables: Drawable[];
   readonly moves: Moves;
+  readonly lights: FileLights;
+  readonly cameras: FileCameras;
   /** The drawables' materials outside of any variant. */
   private readonly plain: number[];
   readonly uses: Attribute[][] = [];
@@ -71,6 +75,8 @@ export class Document {
     this.file = openGltf(input.name, input.bytes, input.resources);
     this.drawables = geometry(this.file);
     this.moves = new Moves(this.file, this.drawables);
+    this.lights = new FileLights(this.file);
+    this.cameras = new FileCameras(this.file);
     this.plain = this.drawables.map(({ material }) => material);
     this.own = { textures: list(this.json.textures).length, images: list(this.json.images).length };
     this.takeExtras(lacquer);

@@ -2,6 +2,7 @@
 import { eachNode, type GltfFile } from '../src/gltf';
 import { isNear, item, list } from '../src/json';
 import { scale, unit, type Vec3 } from '../src/math';
+import type { Moves } from './moves';
 
 /** The fields of an element, as docs/bindings.md has them. */
 export interface Light {
@@ -37,19 +38,38 @@ export function element({ position, positional, radiance, range, direction, spot
 }
 
 /** Those that nodes of the default scene refer to, the first sixteen. */
-export function fileLights(file: GltfFile): Light[] {
-  const declared = file.json.extensions?.KHR_lights_punctual?.lights;
-  const real = (x: unknown, otherwise: number) => (isNear(x) ? x : otherwise);
-  const found: Light[] = [];
-  eachNode(file, (node, world) => {
-    const of = item(declared, node.extensions?.KHR_lights_punctual?.light);
-    if (!of || found.length === kMostLights) return;
-    const direction = unit([-world[8], -world[9], -world[10]]);
-    const radiance = [0, 1, 2].map((i) => real(list(of.color)[i], 1) * real(of.intensity, 1)) as Vec3;
-    if (of.type === 'directional') return void found.push({ ...directional(scale(direction, -1), radiance), direction });
-    const [inner, outer] = [real(of.spot?.innerConeAngle, 0), real(of.spot?.outerConeAngle, Math.PI / 4)];
-    const position: Vec3 = [world[12], world[13], world[14]];
-    found.push({ position, positional: true, radiance, range: real(of.range, 0), direction, spot: of.type === 'spot' ? { inner, outer } : null });
-  });
-  return found;
+export class FileLights {
+  private readonly lamps: { node: number; index: number; of: any }[] = [];
+
+  constructor(file: GltfFile) {
+    const declared = file.json.extensions?.KHR_lights_punctual?.lights;
+    eachNode(file, (node, _, index) => {
+      const light = node.extensions?.KHR_lights_punctual?.light;
+      const of = item(declared, light);
+      if (of && this.lamps.length < kMostLights) this.lamps.push({ node: index, index: light, of });
+    });
+  }
+  get count(): number {
+    return this.lamps.length;
+  }
+
+  /** As they are now, and where their nodes are. */
+  at(moves: Moves): Light[] {
+    return this.lamps.flatMap(({ node, index, of }) => {
+      const world = moves.world(node);
+      if (!world?.every(isNear)) return [];
+      const now = (name: string, otherwise: number, said: unknown = of[name]) => {
+        const [x = said] = moves.moved.get(`/extensions/KHR_lights_punctual/lights/${index}/${name}`) ?? [];
+        return isNear(x) ? x : otherwise;
+      };
+      const color = moves.moved.get(`/extensions/KHR_lights_punctual/lights/${index}/color`) ?? list(of.color);
+      const direction = unit([-world[8], -world[9], -world[10]]);
+      const intensity = now('intensity', 1);
+      const radiance = [0, 1, 2].map((i) => (isNear(color[i]) ? color[i] : 1) * intensity) as Vec3;
+      if (of.type === 'directional') return [{ ...directional(scale(direction, -1), radiance), direction }];
+      const spot = { inner: now('spot/innerConeAngle', 0, of.spot?.innerConeAngle), outer: now('spot/outerConeAngle', Math.PI / 4, of.spot?.outerConeAngle) };
+      const position: Vec3 = [world[12], world[13], world[14]];
+      return [{ position, positional: true, radiance, range: now('range', 0), direction, spot: of.type === 'spot' ? spot : null }];
+    });
+  }
 }

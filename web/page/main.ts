@@ -2,6 +2,7 @@
 // is edited in place.
 import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
 import { Around } from './around';
+import { Cameras } from './cameras';
 import { connectCode, hexOf, selectTerm, showCode } from './code';
 import { fillOthers, fillVariants, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
@@ -11,6 +12,7 @@ import { Document, type Input } from './document';
 import { byId, download, h, tell } from './dom';
 import { Files } from './files';
 import { fromBase64 } from '../src/gltf';
+import { Generated } from './generated';
 import { GpuPainter } from './gpu';
 import { GraphPane } from './graph';
 import { kOwnNodes, NodeText } from './nodetext';
@@ -43,7 +45,9 @@ export class Page {
   private readonly nodeText: NodeText;
   readonly files: Files;
   readonly around: Around;
+  readonly cameras: Cameras;
   private readonly player: Player;
+  private readonly generated: Generated;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
@@ -74,13 +78,16 @@ export class Page {
     this.graph = new GraphPane(this);
     byId('version').textContent = lacquer.version;
     this.fillSelects();
+    this.generated = new Generated(this.nodes, () => this.showText());
     this.connectControls();
     this.files = new Files(this);
     this.around = new Around(this);
+    this.cameras = new Cameras(this);
     this.player = new Player(this);
     connectPointer(viewport, {
       turnAround: (angle, done) => this.around.turnBy(angle, done), pick: (x, y) => this.pick(x, y),
       play: () => this.player.play(), step: (by) => this.player.step(by),
+      byHand: () => this.cameras.leave(),
     });
     connectCode(this);
   }
@@ -134,6 +141,7 @@ export class Page {
     byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
     fillVariants(byId<HTMLSelectElement>('variant'), of);
+    this.cameras.open();
     this.player.open();
     viewport.setScene(of.drawables);
     this.othersOf = '';
@@ -144,7 +152,7 @@ export class Page {
     else this.showNoMaterial();
     this.compileOthers();
     if (of.said.length > 0) this.note(of.said.length === 1 ? of.said[0].text : `${of.said[0].text} (and ${of.said.length - 1} more)`);
-    for (const text of of.moves.said) this.noteMore(text);
+    for (const text of [...of.moves.said, ...of.cameras.said]) this.noteMore(text);
     if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
     this.files.changed();
   }
@@ -377,9 +385,12 @@ export class Page {
     return JSON.stringify([this.of!.file.name, this.of!.material, byId('id').textContent, rest, kinds]);
   }
 
+  private textOptions(target: string): Options {
+    return { ...this.generated.options(this.options()), targets: [target] };
+  }
   /** The text of the chosen target and stage, as `lacquer gen` writes it. */
   text(target: string, stage: 'vertex' | 'fragment'): string {
-    return withShader(this.lacquer, this.of!, { ...this.options(), targets: [target] }, [], (shader) =>
+    return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader) =>
       target === 'spirv' ? hexOf(shader.spirv(stage)) : shader.text(target, stage),
     );
   }
@@ -387,7 +398,7 @@ export class Page {
   /** The file that `lacquer gen` writes of it; null where the material has an error. */
   bytes(target: string, stage: 'vertex' | 'fragment'): Uint8Array<ArrayBuffer> | null {
     try {
-      return withShader(this.lacquer, this.of!, { ...this.options(), targets: [target] }, [], (shader) =>
+      return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader) =>
         target === 'spirv' ? new Uint8Array(shader.spirv(stage).slice().buffer) : new TextEncoder().encode(shader.text(target, stage)),
       );
     } catch (error) {
@@ -397,19 +408,30 @@ export class Page {
   }
 
   /** What an application needs beside the texts: the manifest's entry, the graph, the bytes of the material's block. */
-  described(): { interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
-    return withShader(this.lacquer, this.of!, this.options(), [], (shader, graph) => ({
+  described(): { id: string; interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
+    return withShader(this.lacquer, this.of!, this.textOptions('essl'), [], (shader, graph) => ({
+      id: shader.id,
       interface: shader.interface,
       graph: graph.toText(),
       block: new Uint8Array(shader.packGraph(graph)),
     }));
   }
 
+  /** The same; null, and a message, where the material has an error. */
+  describedOrSaid(): ReturnType<Page['described']> | null {
+    try {
+      return this.described();
+    } catch (error) {
+      this.fail(error);
+      return null;
+    }
+  }
+
   private showText(): void {
     const target = byId<HTMLSelectElement>('target').value;
     const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
     const code = byId('code');
-    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${target} ${stage}`)) return;
+    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${JSON.stringify(this.textOptions(target))} ${stage}`)) return;
     try {
       const text = this.text(target, stage);
       showCode(code, text, (term) => this.select(term, 'code'));
@@ -417,7 +439,8 @@ export class Page {
       if (this.selected) this.showTerm(true);
     } catch (error) {
       if (!(error instanceof LacquerError)) throw error;
-      code.replaceChildren();
+      code.replaceChildren(error.message);
+      byId('size').textContent = '';
     }
   }
 
@@ -676,7 +699,6 @@ export class Page {
       this.compileOthers();
       this.viewport.redraw();
     });
-    this.on('whole', 'click', () => this.viewport.fit());
     this.on('save-picture', 'click', () => void this.savePicture().catch((error: unknown) => this.fail(error)));
     this.on('exposure', 'input', () => {
       this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);

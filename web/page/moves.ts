@@ -4,7 +4,7 @@ import { Reader } from '../src/accessors';
 import type { Drawable, GltfFile, Mat4, Numbers } from '../src/gltf';
 import { isCount, isNear, item, list, numbersOf, once, rootsOf } from '../src/json';
 import { compose, identity, mirrors, multiply, normalMatrix } from '../src/math';
-import { Bent, type Skin, type Target } from './bend';
+import { Bent, sizesOf, type Skin, type Target } from './bend';
 import { ClipReader, valueAt, type Clip, type Part } from './clips';
 
 /** Of a file, so that a picture takes no seconds: influences of joints and changes by morph targets, each of one vertex. What has
@@ -13,6 +13,7 @@ const kMostInfluences = 2 ** 22;
 const kMostChanges = 2 ** 24;
 /** Sets of four joints that a vertex may have. */
 const kMostSets = 4;
+const kCounts = ['no', 'one', 'two', 'three'];
 /** What is said of a file at most. */
 const kMostSaid = 8;
 
@@ -36,6 +37,8 @@ export class Moves {
   readonly clips: Clip[];
   /** What is wrong in the file. */
   readonly said: string[] = [];
+  /** Numbers of lamps and cameras that the clip has now, by their pointers. */
+  readonly moved = new Map<string, number[]>();
   private readonly places: Place[] = [];
   /** The nodes, each behind its parent. */
   private readonly order: number[] = [];
@@ -46,6 +49,8 @@ export class Moves {
   /** What the clip had moved in the pose before. */
   private touched = new Set<number>();
   private readonly targetCounts = new Map<unknown, number>();
+  /** By primitives: what their targets change. */
+  private readonly targetNames = new Map<unknown, Set<string>>();
   /** Whether one of a list's weights is not 0. */
   private readonly weighs = new Map<unknown, boolean>();
   private readonly joints = new Map<Skin, Map<Drawable['attributes'], [Numbers, Numbers][]>>();
@@ -125,34 +130,39 @@ export class Moves {
     const vertices = drawable.attributes.get('POSITION')!.data.length / 3;
     const skin = node.skin === undefined ? null : once(this.skins, node.skin, () => this.skinOf(node.skin));
     const sets = skin ? once(once(this.joints, skin, () => new Map()), drawable.attributes, () => this.jointsOf(drawable, skin, at)) : [];
-    const given = node.weights ?? item(this.json.meshes, node.mesh)?.weights;
-    const morphs = weighted || once(this.weighs, given, () => list(given).some((weight) => weight !== 0));
+    const resting = node.weights ?? item(this.json.meshes, node.mesh)?.weights;
+    const morphs = weighted || once(this.weighs, resting, () => list(resting).some((weight) => weight !== 0));
     const count = morphs ? this.targetCount(index) : 0;
     if (sets.length === 0 && count === 0) return null;
     const influences = 4 * vertices * sets.length;
-    if (influences > this.influences || vertices * count > this.changes || !this.from.takes(Bent.numbers(drawable.attributes))) {
+    const given = () => new Set<string>(list(of.targets).flatMap((target) => Object.keys(target ?? {})));
+    const names = Bent.names(drawable.attributes, count > 0 ? once(this.targetNames, of, given) : new Set());
+    const changes = vertices * count * Math.ceil(names.length / 3);
+    const numbers = names.reduce((sum, name) => sum + drawable.attributes.get(name)!.data.length, 0);
+    if (influences > this.influences || changes > this.changes || !this.from.takes(numbers)) {
       this.say(`${at}: there is too much of the file to be bent: it is drawn at rest`);
       return null;
     }
     this.influences -= influences;
-    this.changes -= vertices * count;
-    const weights = Array.from({ length: count }, (_, i) => (isNear(list(given)[i]) ? given[i] : 0));
-    const targets = count > 0 ? this.targetsOf(of, at, vertices) : [];
+    this.changes -= changes;
+    const weights = Array.from({ length: count }, (_, i) => (isNear(list(resting)[i]) ? resting[i] : 0));
+    const targets = count > 0 ? this.targetsOf(of, at, names, vertices) : [];
     const bent = new Bent(drawable, of.attributes.NORMAL === undefined, sets.length > 0 ? skin : null, sets, targets, weights);
     this.bendings.push({ node: index, bent });
     return bent;
   }
 
-  private targetsOf(of: any, at: string, vertices: number): Target[] {
+  private targetsOf(of: any, at: string, names: string[], vertices: number): Target[] {
     return list(of.targets).map((target, t) => {
-      const read = (name: string): Float32Array | undefined => {
-        if (target?.[name] === undefined) return undefined;
-        const found = this.from.positions(target[name]);
-        if (found?.length === 3 * vertices) return found;
-        this.say(`${at}/targets/${t}/${name}: accessor ${JSON.stringify(target[name])} cannot be read as three numbers for each of ${vertices} vertices; it is left out`);
-        return undefined;
-      };
-      return { POSITION: read('POSITION'), NORMAL: read('NORMAL'), TANGENT: read('TANGENT') };
+      const found = new Map<string, Numbers>();
+      for (const name of names) {
+        if (target?.[name] === undefined) continue;
+        const [least, most] = sizesOf(name);
+        const read = this.from.numbers(target[name]);
+        if (read && read.size >= least && read.size <= most && read.data.length === read.size * vertices && read.data.every(isNear)) found.set(name, read);
+        else this.say(`${at}/targets/${t}/${name}: accessor ${JSON.stringify(target[name])} cannot be read as ${kCounts[least]} numbers for each of ${vertices} vertices; it is left out`);
+      }
+      return found;
     });
   }
 
@@ -216,12 +226,18 @@ export class Moves {
       this.touched.add(node);
       dirty.add(node);
     }
+    this.moved.clear();
+    for (const channel of clip?.properties ?? []) this.moved.set(channel.property, valueAt(channel, seconds, false));
     for (const index of dirty) {
       const { now, matrix } = this.places[index];
       if (now) matrix.set(compose(now.translation, now.rotation, now.scale));
     }
     this.carry(dirty);
     for (const { node, bent } of this.bendings) bent.bend(weights.get(node) ?? null);
+  }
+  /** Where a node is in the world. */
+  world(node: number): Mat4 | undefined {
+    return this.places[node]?.world;
   }
   private rest({ now, rest }: Place): void {
     if (now && rest) Object.assign(now, rest);

@@ -108,6 +108,8 @@ export class Player {
   private show(seconds: number): void {
     this.seconds = seconds;
     this.page.document?.moves.pose(this.clip, seconds);
+    this.page.around.follow();
+    this.page.cameras.follow();
     this.tell();
   }
   private tell(): void {

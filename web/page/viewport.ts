@@ -8,10 +8,11 @@ import type { GpuPainter } from './gpu';
 import { isCount, item, list } from '../src/json';
 import { frameBlocks, kPicturesPerSecond, type Surroundings } from './frame';
 import { directional, kStudioLights, type Light } from './lights';
-import { add, identity, lookAt, mirrors, multiply, perspective, point, scale, type Mat4, type Vec3 } from '../src/math';
+import { identity, mirrors, multiply, point, type Mat4, type Vec3 } from '../src/math';
 import { firstMet } from './pick';
 import { ball, cornersUv, flatDrawable, neutral } from './shapes';
 import { kShowFragment } from './tone';
+import { orbiting, type View } from './view';
 
 /** A glTF texture's index, its colour space, and where the graph has it how it is looked up, as a glTF sampler: else as the file's
  * sampler says. */
@@ -142,6 +143,8 @@ export class Viewport {
   private second: Target | null = null;
   private pending = 0;
 
+  /** Of the file's own, in place of the orbit. */
+  camera: View | null = null;
   orbit = { yaw: 0.35, pitch: 0.2, distance: kDistance };
   middle: Vec3 = [0, 0, 0];
   radius = 1;
@@ -214,7 +217,7 @@ export class Viewport {
   }
   /** Moves what is looked at to the right and up, by halves of the picture's height. */
   pan(right: number, up: number): void {
-    const view = lookAt(this.eye(), this.middle);
+    const { view } = orbiting(this.orbit, this.middle, this.radius);
     const by = this.orbit.distance * this.radius * Math.tan(0.36);
     this.middle = this.middle.map((x, i) => x + by * (right * view[4 * i] + up * view[4 * i + 1])) as Vec3;
     this.redraw();
@@ -392,8 +395,8 @@ export class Viewport {
   /** By their middles along the view. */
   private fromBack<T extends { mesh: Mesh }>(found: T[]): T[] {
     if (found.length < 2) return found;
-    const eye = this.eye();
-    const [x, y, z] = this.middle.map((at, i) => at - eye[i]);
+    const { view } = this.view();
+    const [x, y, z] = [-view[2], -view[6], -view[10]];
     const far = new Map(found.map(({ mesh }) => {
       const at = point(mesh.drawable.model, mesh.middle);
       return [mesh, x * at[0] + y * at[1] + z * at[2]];
@@ -493,26 +496,19 @@ export class Viewport {
     gl.bindBufferBase(gl.UNIFORM_BUFFER, binding, this.blocks[binding]);
   }
 
+  /** The ball is no part of the file, whose cameras may stand anywhere. */
+  private view(): View {
+    return (this.useBall ? null : this.camera) ?? orbiting(this.orbit, this.middle, this.radius);
+  }
   eye(): Vec3 {
-    const { yaw, pitch, distance } = this.orbit;
-    const to: Vec3 = [Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)];
-    return add(this.middle, scale(to, distance * this.radius));
+    return this.view().eye;
   }
   viewProjection(aspect: number): Mat4 {
-    const { distance } = this.orbit;
-    const near = Math.max(distance - 1.5, 0.02) * this.radius;
-    return multiply(perspective(2 * Math.atan(this.slope(aspect)), aspect, near, (distance + 3) * this.radius), lookAt(this.eye(), this.middle));
+    const { projection, view } = this.view();
+    return multiply(projection(aspect), view);
   }
-
-  /** The tangent of half the angle that is seen from below to above. */
-  private slope(aspect: number): number {
-    return Math.tan(0.36) / Math.min(aspect, 1);
-  }
-  /** From the eye to the right, up and ahead: rays through (x, y) of the screen, from -1 to 1, are x right + y up + ahead. */
   rays(aspect: number): Float32Array {
-    const view = lookAt(this.eye(), this.middle);
-    const slope = this.slope(aspect);
-    return Float32Array.from([slope * aspect, slope, -1].flatMap((by, row) => [view[row] * by, view[4 + row] * by, view[8 + row] * by]));
+    return this.view().rays(aspect);
   }
 
   private resolve({ frame, resolved, width, height }: Target): void {

@@ -54,18 +54,38 @@ function stored(from: Reader, index: unknown): { data: Stored; size: number; lar
   const of = item(file.json.accessors, index);
   const [Kind, component, largest] = kArrays.get(of?.componentType) ?? [];
   const size = kSizes.get(of?.type);
-  if (!Kind || !component || !largest || !size || of.sparse || !isCount(of.count) || of.count === 0) return null;
-  const bytes = bufferView(file, of.bufferView);
-  if (!bytes) return null;
+  if (!Kind || !component || !largest || !size || !isCount(of.count) || of.count === 0) return null;
+  // Without a bufferView of its own a sparse one begins with zeros.
+  const bare = of.bufferView === undefined && of.sparse !== undefined;
+  const bytes = bare ? null : bufferView(file, of.bufferView);
+  if (!bytes && !bare) return null;
   const width = size * component;
-  const stride = file.json.bufferViews[of.bufferView].byteStride ?? width;
+  const stride = bare ? width : file.json.bufferViews[of.bufferView].byteStride ?? width;
   const start = of.byteOffset ?? 0;
-  if (!isCount(start) || !isCount(stride) || stride < width || start + stride * (of.count - 1) + width > bytes.length) return null;
+  if (!isCount(start) || !isCount(stride) || stride < width || (bytes && start + stride * (of.count - 1) + width > bytes.length)) return null;
   if (!from.takes(of.count * size)) return null;
   const packed = new Uint8Array(width * of.count);
-  if (stride === width) packed.set(bytes.subarray(start, start + packed.length));
-  else for (let i = 0; i < of.count; ++i) packed.set(bytes.subarray(start + i * stride, start + i * stride + width), i * width);
+  if (bytes && stride === width) packed.set(bytes.subarray(start, start + packed.length));
+  else if (bytes) for (let i = 0; i < of.count; ++i) packed.set(bytes.subarray(start + i * stride, start + i * stride + width), i * width);
+  if (of.sparse !== undefined && !replace(from, of.sparse, packed, width)) return null;
   return { data: new Kind(packed.buffer), size, largest };
+}
+
+/** Puts a sparse accessor's elements in the place of those that it names; false where they cannot be read. */
+function replace(from: Reader, sparse: any, packed: Uint8Array<ArrayBuffer>, width: number): boolean {
+  const { count, indices, values } = sparse ?? {};
+  const [Kind, component] = kArrays.get(indices?.componentType) ?? [];
+  const [named, given] = [indices, values].map((part) => bufferView(from.file, part?.bufferView));
+  const [first, begin] = [indices, values].map((part) => part?.byteOffset ?? 0);
+  if (!Kind || !component || ![5121, 5123, 5125].includes(indices.componentType) || !named || !given) return false;
+  if (!isCount(count) || !isCount(first) || !isCount(begin) || first + count * component > named.length || begin + count * width > given.length) return false;
+  if (!from.takes(count * (1 + width / component))) return false;
+  const places = new Kind(named.slice(first, first + count * component).buffer);
+  return places.every((place, i) => {
+    if (width * place >= packed.length) return false;
+    packed.set(given.subarray(begin + i * width, begin + (i + 1) * width), width * place);
+    return true;
+  });
 }
 
 function numbers(from: Reader, index: unknown): Numbers | null {

@@ -34,6 +34,35 @@ test('the text is copied and saved as `lacquer gen` writes it, under its name', 
     assert.equal(await page.textContent('#size'), `${readFileSync(join(out, 'essl', `${id}.frag.glsl`)).length} bytes`);
   }));
 
+test('the text is made with the options of `lacquer gen` that are chosen; the picture stays', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const id = await page.textContent('#id');
+    const saved = async () => {
+      const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download-code')]);
+      return [download.suggestedFilename(), readFileSync(await download.path(), 'utf8')];
+    };
+    const cases = [
+      ['baked', ['--params', 'baked', '--lights', 'none'], { 'gen-parameters': 'baked', 'gen-lights': 'none' }],
+      ['surface', ['--template', 'surface'], { 'gen-template': 'surface' }],
+      ['switched', ['--switch', 'ibl=off', '--switch', 'dfg_table=off'], { 'switch-ibl': 'off', 'switch-dfg_table': 'off' }],
+    ];
+    for (const [name, flags, chosen] of cases) {
+      const out = join(folder, name);
+      lacquer('gen', 'examples/clearcoat.gltf', '-o', out, '-q', '--target', 'essl', ...flags);
+      await page.evaluate(() => document.querySelector('#generated details').setAttribute('open', ''));
+      for (const [control, value] of Object.entries(chosen)) await page.selectOption(`#${control}`, value);
+      const [file, text] = await saved();
+      assert.equal(text, readFileSync(join(out, 'essl', file), 'utf8'), name);
+      assert.equal(await page.textContent('#code'), text);
+      assert.equal(await page.textContent('#id'), id);
+      for (const control of Object.keys(chosen)) await page.selectOption(`#${control}`, '');
+    }
+    assert.equal((await saved())[0], `${id}.frag.glsl`);
+    // What cannot be together is said in the place of the text.
+    await page.selectOption('#gen-binding', 'bindless');
+    assert.match(await page.textContent('#code'), /bindless/);
+  }));
+
 test('all targets are saved as a folder, as `lacquer gen` writes it', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
     const targets = await page.evaluate(() => [...document.getElementById('target').options].map(({ value }) => value));

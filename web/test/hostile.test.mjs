@@ -19,7 +19,8 @@ const part = async (name, place) => {
 };
 const { bounds, bufferView, eachNode, fetchGltf, geometry, image, openGltf, sourceOf } = await part('gltf', 'web/src');
 const { Document } = await part('document', 'web/page');
-const { element, fileLights } = await part('lights', 'web/page');
+const { element, FileLights } = await part('lights', 'web/page');
+const { Moves } = await part('moves', 'web/page');
 
 /** A triangle, with every kind of thing that is read; `change` makes of it what is to be read. */
 function triangle(change = () => undefined) {
@@ -104,7 +105,7 @@ function readAll(file) {
   }
   const { middle, radius } = bounds(drawables);
   if (drawables.length > 0) assert.ok([...middle, radius].every(Number.isFinite), 'the bounds are no numbers');
-  const lights = fileLights(file).map(element);
+  const lights = new FileLights(file).at(new Moves(file, [])).map(element);
   for (const light of lights) assert.ok(light.every(Number.isFinite), 'a light is no numbers');
   for (const index of [0, 1, -1, 0.5, '0', 'constructor', null]) bufferView(file, index);
   const source = sourceOf(Array.isArray(file.json.textures) ? file.json.textures[0] : undefined);

@@ -23,7 +23,7 @@ after(() => rmSync(parts, { recursive: true }));
 /** With room for one more bar below the picture. */
 const kTall = { ...kSmall, height: 460 };
 
-const kTypes = { SCALAR: 1, VEC3: 3, VEC4: 4, MAT4: 16 };
+const kTypes = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 /** A file of a square from -1 to 1 that shines in red, whose numbers accessor() takes in. */
 function squareFile(change) {
   const chunks = [];
@@ -249,6 +249,193 @@ test('a morph target moves what it is of, by the weights of the mesh, the node a
   assert.deepEqual(await seen(page, places), [false, true, false]);
 }, { size: kTall }));
 
+test('morph targets change colours and places in a picture', () => open([], async (page) => {
+  await reduced(page);
+  await show(page, squareFile((json, accessor) => {
+    const [primitive] = json.meshes[0].primitives;
+    json.materials = [
+      { doubleSided: true, pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 }, extensions: { KHR_materials_unlit: {} } },
+    ];
+    json.extensionsUsed = ['KHR_materials_unlit'];
+    primitive.attributes.COLOR_0 = accessor('VEC4', Array(4).fill([1, 0, 0, 1]).flat());
+    // Beyond 1 it ends.
+    primitive.targets = [{ COLOR_0: accessor('VEC4', Array(4).fill([-1, 5, 0, 0]).flat()) }, { COLOR_0: accessor('VEC3', Array(4).fill([-1, 0, 1]).flat()) }];
+    json.animations = [clip(accessor, 0, 'weights', [0, 1, 2, 3], 'SCALAR', [0, 0, 1, 0, 0, 1, 0, 0])];
+  }));
+  const color = async () => (await middle(page)).slice(0, 3).map((x) => (x > 200 ? 1 : x < 100 ? 0 : x)).join('');
+  assert.equal(await color(), '100');
+  await scrub(page, 1);
+  assert.equal(await color(), '010');
+  await scrub(page, 2);
+  assert.equal(await color(), '001');
+  await scrub(page, 3);
+  assert.equal(await color(), '100');
+  // A picture of red on the left and green on the right, of which the left half's middle is seen.
+  const bitmap = await page.evaluate(() => {
+    const canvas = document.createElement('canvas');
+    Object.assign(canvas, { width: 64, height: 64 });
+    const context = canvas.getContext('2d');
+    context.fillStyle = '#f00';
+    context.fillRect(0, 0, 32, 64);
+    context.fillStyle = '#0f0';
+    context.fillRect(32, 0, 32, 64);
+    return canvas.toDataURL('image/png');
+  });
+  await show(page, squareFile((json, accessor) => {
+    const [primitive] = json.meshes[0].primitives;
+    Object.assign(json, { images: [{ uri: bitmap }], textures: [{ source: 0 }], extensionsUsed: ['KHR_materials_unlit'] });
+    json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } }, extensions: { KHR_materials_unlit: {} } }];
+    primitive.attributes.TEXCOORD_0 = accessor('VEC2', Array(4).fill([0.25, 0.5]).flat());
+    primitive.targets = [{ TEXCOORD_0: accessor('VEC2', Array(4).fill([0.5, 0]).flat()) }];
+    json.animations = [clip(accessor, 0, 'weights', [0, 1], 'SCALAR', [0, 1])];
+  }));
+  assert.equal(await color(), '100');
+  await scrub(page, 1);
+  assert.equal(await color(), '010');
+}, { size: kTall }));
+
+/** A clip that moves values by their pointers: lists of numbers at the seconds from 0 on. */
+const pointing = (accessor, moved) => ({
+  samplers: Object.values(moved).map(([type, values]) => ({ input: accessor('SCALAR', Array.from({ length: values.length / kTypes[type] }, (_, i) => i)), output: accessor(type, values) })),
+  channels: Object.keys(moved).map((pointer, sampler) => ({ sampler, target: { path: 'pointer', extensions: { KHR_animation_pointer: { pointer } } } })),
+});
+/** The colour of a place, as seen() has them: which of red, green and blue are bright. */
+const colorAt = (page, x, y) => page.evaluate(([x, y]) => {
+  const { viewport } = window.lacquerPage;
+  const pixels = viewport.pixels();
+  const { width, height } = viewport.canvas;
+  const at = 4 * (Math.floor((0.5 - y / 6) * height) * width + Math.floor(width / 2 + (x / 6) * height));
+  return [...pixels.subarray(at, at + 3)].map((x) => (x > 150 ? 1 : x < 60 ? 0 : x)).join('');
+}, [x, y]);
+
+test("the file's lamps go with their nodes and have the clip's colours", () => open([], async (page) => {
+  await reduced(page);
+  const kLights = '/extensions/KHR_lights_punctual/lights';
+  await show(page, squareFile((json, accessor) => {
+    json.materials = [{ pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 } }];
+    json.extensions = { KHR_lights_punctual: { lights: [{ type: 'point', color: [1, 0, 0], intensity: 3 }, { type: 'spot', intensity: 0, spot: { innerConeAngle: 0.1, outerConeAngle: 0.2 } }] } };
+    json.extensionsUsed = ['KHR_lights_punctual', 'KHR_animation_pointer'];
+    json.nodes = [{ mesh: 0 }, { children: [2] }, { extensions: { KHR_lights_punctual: { light: 0 } }, translation: [0, 0, 1] }, { extensions: { KHR_lights_punctual: { light: 1 } }, translation: [0, 0, 2] }];
+    json.scenes[0].nodes = [0, 1, 3];
+    json.animations = [
+      clip(accessor, 1, 'translation', [0, 1], 'VEC3', [0, 0, 0, 0, 0, -9]),
+      pointing(accessor, { [`${kLights}/0/color`]: ['VEC3', [1, 0, 0, 0, 1, 0]], [`${kLights}/0/intensity`]: ['SCALAR', [3, 3]] }),
+      pointing(accessor, { [`${kLights}/1/intensity`]: ['SCALAR', [12, 12]], [`${kLights}/1/color`]: ['VEC3', [0, 0, 1, 0, 0, 1]], [`${kLights}/1/spot/innerConeAngle`]: ['SCALAR', [0, 0.9]], [`${kLights}/1/spot/outerConeAngle`]: ['SCALAR', [0.1, 1]], [`${kLights}/0/intensity`]: ['SCALAR', [0, 0]] }),
+    ];
+  }));
+  assert.equal(await page.evaluate(() => window.lacquerPage.document.moves.said.join()), '');
+  await page.selectOption('#lamps', 'own');
+  await seen(page, []);
+  assert.equal(await colorAt(page, 0, 0), '100');
+  await scrub(page, 1);
+  assert.equal(await colorAt(page, 0, 0), '000'); // behind it
+  await scrub(page, 0);
+  assert.equal(await colorAt(page, 0, 0), '100');
+  await page.selectOption('#clip', '1');
+  await scrub(page, 1);
+  assert.equal(await colorAt(page, 0, 0), '010');
+  await page.selectOption('#clip', '2');
+  await scrub(page, 0);
+  assert.deepEqual([await colorAt(page, 0, 0), await colorAt(page, 0.9, 0)], ['001', '000']);
+  await scrub(page, 1);
+  assert.deepEqual([await colorAt(page, 0, 0), await colorAt(page, 0.9, 0)], ['001', '001']);
+  await page.selectOption('#clip', '');
+  assert.equal(await colorAt(page, 0, 0), '100');
+}, { size: kTall }));
+
+test('the picture is seen by a camera of the file, which moves, until a hand turns it', () => open([], async (page) => {
+  await reduced(page);
+  await show(page, squareFile((json, accessor) => {
+    json.cameras = [
+      { type: 'perspective', perspective: { yfov: 2 * Math.atan(0.5), znear: 0.1 } },
+      { type: 'orthographic', name: 'flat', orthographic: { xmag: 0.5, ymag: 3, znear: 0, zfar: 20 } },
+      { type: 'perspective', perspective: { yfov: 0, znear: 0.1 } },
+    ];
+    json.nodes = [{ mesh: 0 }, { children: [2], name: 'arm' }, { camera: 0, translation: [0, 0, 6], scale: [2, 2, 2], name: 'eye' }, { camera: 1, translation: [1, 0, 6] }, { camera: 2 }];
+    json.scenes[0].nodes = [0, 1, 3, 4];
+    json.extensionsUsed = ['KHR_animation_pointer'];
+    json.animations = [
+      clip(accessor, 1, 'translation', [0, 1], 'VEC3', [0, 0, 0, 2, 0, 0]),
+      pointing(accessor, { '/cameras/0/perspective/yfov': ['SCALAR', [2 * Math.atan(0.5), 2 * Math.atan(1)]], '/cameras/1/orthographic/ymag': ['SCALAR', [3, 6]] }),
+    ];
+  }));
+  const red = async (...places) => {
+    const colors = [];
+    for (const x of places) colors.push(await colorAt(page, x, 0) === '100');
+    return colors;
+  };
+  assert.deepEqual(await page.locator('#camera option').allTextContents(), ['Turned by hand', 'eye', 'flat']);
+  assert.match(await page.evaluate(() => window.lacquerPage.document.cameras.said.join()), /\/cameras\/2: yfov is 0, and must be between 0 and pi; it is left out/);
+  // Six units from the lower edge to the upper one.
+  await page.selectOption('#camera', { label: 'eye' });
+  assert.deepEqual(await red(-0.9, 0.9, -1.1, 1.1), [true, true, false, false]);
+  await scrub(page, 1);
+  assert.deepEqual(await red(-2.9, -1.1, -0.9, 0), [true, true, false, false]);
+  await scrub(page, 0);
+  await page.selectOption('#clip', '1');
+  await scrub(page, 1);
+  assert.deepEqual(await red(-0.4, 0.4, -0.6, 0.6), [true, true, false, false]);
+  await scrub(page, 0);
+  await page.selectOption('#camera', { label: 'flat' });
+  assert.deepEqual(await red(-1.9, -0.1, -2.1, 0.1), [true, true, false, false]);
+  await scrub(page, 1);
+  assert.deepEqual(await red(-0.9, -0.1, -1.1, 0.1), [true, true, false, false]);
+  // A click chooses what this camera sees, and a drag begins where the camera is.
+  const aspect = await page.evaluate(() => window.lacquerPage.viewport.canvas.width / window.lacquerPage.viewport.canvas.height);
+  const at = (x) => page.evaluate((x) => window.lacquerPage.viewport.materialAt(x, 0), x / 3 / aspect);
+  assert.deepEqual([await at(-0.5), await at(0.2)], [0, undefined]);
+  await page.selectOption('#camera', { label: 'eye' });
+  await page.selectOption('#clip', '');
+  const eye = await page.evaluate(() => window.lacquerPage.viewport.eye());
+  assert.deepEqual(eye, [0, 0, 6]);
+  await page.focus('#viewport');
+  await page.keyboard.press('+');
+  assert.equal(await page.inputValue('#camera'), '');
+  const { orbit, middle: between, radius } = await page.evaluate(() => {
+    const { orbit, middle, radius } = window.lacquerPage.viewport;
+    return { orbit, middle, radius };
+  });
+  assert.deepEqual([orbit.yaw, orbit.pitch], [0, 0]);
+  assert.ok(Math.abs(orbit.distance * radius - 0.9 * (6 - between[2])) < 1e-3, JSON.stringify([orbit, between, radius]));
+  await page.keyboard.press('f');
+  await painted(page);
+  // The ball is no part of the file.
+  await page.selectOption('#camera', { label: 'flat' });
+  await page.selectOption('#shape', 'ball');
+  assert.equal(await colorAt(page, 0, 0), '100');
+  await drop(page, [['plain.gltf', squareFile(() => undefined)]]);
+  assert.equal(await page.isVisible('#camera'), false);
+}, { size: kTall }));
+
+test('sparse accessors are drawn: those of a morph target alone, and those that change another one', () => open([], async (page) => {
+  await reduced(page);
+  const file = (change) => squareFile((json, accessor) => {
+    /** Vertices 1 and 2 of a list that has four. */
+    const sparse = (index, numbers, componentType = 5123) => {
+      const [places, values] = [accessor('SCALAR', [1, 2], 5123), accessor('VEC3', numbers)].map((each) => json.accessors[each].bufferView);
+      const of = { count: 2, indices: { bufferView: places, componentType }, values: { bufferView: values } };
+      if (index < 0) return json.accessors.push({ componentType: 5126, count: 4, type: 'VEC3', sparse: of }) - 1;
+      json.accessors[index].sparse = of;
+      return index;
+    };
+    change(json, sparse);
+  });
+  const wide = [[-0.5, 0], [2, 0]];
+  await show(page, file((json, sparse) => {
+    json.meshes[0].primitives[0].targets = [{ POSITION: sparse(-1, [2, 0, 0, 2, 0, 0]) }];
+    json.meshes[0].weights = [1];
+  }));
+  assert.deepEqual(await seen(page, wide), [true, true]);
+  assert.equal(await page.evaluate(() => window.lacquerPage.document.moves.said.join()), '');
+  await show(page, file((json, sparse) => sparse(0, [3, -1, 0, 3, 1, 0])));
+  assert.deepEqual(await seen(page, wide), [true, true]);
+  // What cannot be read leaves its primitive out.
+  for (const wrong of [{ componentType: 5126 }, { byteOffset: 2 }, { bufferView: 99 }]) {
+    await show(page, file((json, sparse) => Object.assign(json.accessors[sparse(0, [3, -1, 0, 3, 1, 0])].sparse.indices, wrong)));
+    assert.equal(await page.evaluate(() => window.lacquerPage.document.drawables.length), 0);
+  }
+}, { size: kTall }));
+
 test('an animation plays, stands and is stepped through by keys', () => open([], async (page) => {
   await show(page, squareFile((json, accessor) => {
     json.animations = [clip(accessor, 0, 'translation', [0, 60], 'VEC3', [0, 0, 0, 4, 0, 0])];
@@ -311,6 +498,11 @@ test('what is wrong with what moves is said, and the rest is drawn', () => open(
     json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', [5, 5, 5]) }];
     json.meshes[0].weights = [1];
   }), /targets\/0\/POSITION: accessor \d+ cannot be read as three numbers for each of 4 vertices/);
+  assert.match(await said((json, accessor) => {
+    json.meshes[0].primitives[0].attributes.TEXCOORD_0 = accessor('VEC2', Array(8).fill(0));
+    json.meshes[0].primitives[0].targets = [{ TEXCOORD_0: 0 }];
+    json.meshes[0].weights = [1];
+  }), /targets\/0\/TEXCOORD_0: accessor 0 cannot be read as two numbers for each of 4 vertices/);
   assert.match(await said(moved('translation', [0, 1], 'VEC3', [0, 0, 0])), /\/animations\/0\/channels\/0: the sampler's output has 3 numbers, 3 in each element: 2 times by LINEAR need 6/);
   assert.match(await said(moved('translation', [1, 0], 'VEC3', [0, 0, 0, 1, 1, 1])), /cannot be read as times/);
   assert.match(await said(moved('rotation', [0, 1], 'VEC3', [0, 0, 0, 1, 1, 1])), /need 8/);
@@ -398,7 +590,8 @@ function playAll({ moves, drawables }) {
 test('whatever is in the place of whatever value, all clips play', () => {
   const whole = squareFile((json, accessor) => {
     bend(json, accessor);
-    json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', Array(12).fill(2)), NORMAL: accessor('VEC3', Array(12).fill(1)) }];
+    json.meshes[0].primitives[0].targets = [{ POSITION: accessor('VEC3', Array(12).fill(2)), NORMAL: accessor('VEC3', Array(12).fill(1)), COLOR_0: accessor('VEC3', Array(12).fill(1)) }];
+    json.meshes[0].primitives[0].attributes.COLOR_0 = accessor('VEC4', Array(16).fill(1));
     json.meshes[0].weights = [0.5];
     json.nodes.push({ mesh: 0, rotation: [0, 0, 0, 1], scale: [1, 1, 1], matrix: undefined });
     json.animations = [

@@ -17,7 +17,8 @@ const part = async (name, place = 'web/page') => {
 };
 const { readHdr, radianceOf } = await part('hdr');
 const { makeEnvironment, Turned } = await part('environment');
-const { element, fileLights } = await part('lights');
+const { element, FileLights } = await part('lights');
+const { Moves } = await part('moves');
 const { halves } = await part('gpu');
 const { frameBlocks } = await part('frame');
 const { kBlocks } = await part('viewport');
@@ -151,7 +152,7 @@ test("a file's own lamps are the elements that docs/bindings.md describes", () =
     scene: 0,
   };
   const file = openGltf('a.gltf', Buffer.from(JSON.stringify(json)), new Map());
-  const [sun, bulb, spot, ...more] = fileLights(file).map(element);
+  const [sun, bulb, spot, ...more] = new FileLights(file).at(new Moves(file, [])).map(element);
   assert.deepEqual(more, []);
   close(sun, [0, 1, 0, 0, 2, 1, 0.5, 0, 0, -1, 0, 0, 1, 0, 0, 0], 1e-6);
   close(bulb, [1, 2, 4, 1, 30, 30, 30, 1 / 16, 0, 0, -1, 0, 1, 0, 0, 0], 1e-6);
