@@ -7,12 +7,16 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "analysis/relax.h"
+#include "check/check.h"
 #include "lacquer/generate.h"
 #include "lower/lower.h"
 #include "passes/passes.h"
 #include "passes/pipeline.h"
+#include "schedule/schedule.h"
 #include "support/cases.h"
 #include "support/materials.h"
+#include "targets/legalize.h"
+#include "targets/target.h"
 
 namespace lacquer::test::half_test {
 namespace {
@@ -30,66 +34,110 @@ std::pair<bool, bool> halvesOf(const std::vector<uint32_t>& words) {
   return {capable, typed};
 }
 
-TEST(Halves, AreValidInEachLanguageAndSaid) {
-  Options options;
-  options.targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl,
-                     Target::Wgsl, Target::Spirv,  Target::Msl};
-  options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
-  options.parameters = Parameters::Baked;
-  options.relaxed = 0.5;
-  options.half = true;
-  options.programs_model = true;  // the same on every machine
-  size_t halved = 0, plain = 0;
-  std::vector<std::filesystem::path> files = findFiles(sourceFolder() / "examples", ".gltf");
-  for (const auto& file : findFiles(sourceFolder() / "bench/works", ".gltf")) files.push_back(file);
-  for (const auto& file : files) {
-    Messages messages;
-    const Scene scene = Scene::load(file.string(), options, messages);
-    ASSERT_TRUE(scene) << file;
-    for (size_t i = 0; i < scene.materialCount(); ++i) {
-      Messages said;
-      Graph graph = scene.graph(i, kUnusedAttributes, options, said);
-      if (!graph) continue;
-      const Shader shader = graph.generate(options, said);  // checked by glslang and SPIRV-Tools
-      for (const Message& message : said) EXPECT_NE(message.level, Message::Level::Error) << message.text;
-      ASSERT_TRUE(shader) << file;
-      const bool used = shader.reflection().half && shader.reflection().half->used;
-      ++(used ? halved : plain);
-      EXPECT_EQ(halvesOf(shader.fragmentSpirv()), std::pair(used, used)) << file;
-      EXPECT_EQ(halvesOf(shader.vertexSpirv()), std::pair(false, false)) << file;
-      EXPECT_EQ(has(shader.fragmentText(Target::Glsl), "explicit_arithmetic_types_float16"), used) << file;
-      EXPECT_EQ(has(shader.fragmentText(Target::Hlsl), "min16float"), used) << file;
-      EXPECT_EQ(has(shader.fragmentText(Target::Wgsl), "enable f16;"), used) << file;
-      EXPECT_EQ(has(shader.fragmentText(Target::Msl), "half"), used) << file;
-      EXPECT_FALSE(has(shader.fragmentText(Target::GlslGl), "f16")) << file;
-      EXPECT_FALSE(has(shader.fragmentText(Target::Essl), "f16")) << file;
-      EXPECT_EQ(has(shader.interfaceJson(), "\"half\""), shader.reflection().half.has_value()) << file;
-    }
+/// The materials of a file with numbers for parameters and one light, relaxed.
+std::vector<ir::Module> relaxedModules(const std::filesystem::path& file,
+                                       const passes::PipelineOptions& more) {
+  static const lang::Library library = lang::Library::embedded();
+  std::vector<ir::Module> modules;
+  const Result<material::Document> document = readMaterials(file.string());
+  EXPECT_TRUE(document) << file;
+  if (!document) return modules;
+  for (const material::Material& material : document->materials) {
+    if (hasError(material.diagnostics)) continue;
+    gltf::VertexAttributes attributes;
+    attributes.normal = attributes.tangent = true;
+    attributes.texCoord = {true, true, false, false};
+    Diagnostics warnings;
+    const graph::Graph graph = buildGraph(material, attributes, {}, warnings);
+    lower::LowerOptions options;
+    options.parameters = lower::ParameterMode::Baked;
+    Result<ir::Module> module = lower::lower(graph, library, options);
+    EXPECT_TRUE(module) << file;
+    if (!module) continue;
+    passes::PipelineOptions pipeline = more;
+    pipeline.lights = {false, {{"directional", 1}}};
+    pipeline.relaxed = 0.05;
+    passes::runPipeline(*module, pipeline);
+    modules.push_back(std::move(*module));
   }
-  EXPECT_GT(halved, 5U);
-  EXPECT_GT(plain, 5U);
+  return modules;
 }
 
-/// W1 with numbers for parameters and one light, relaxed.
 ir::Module relaxedWork(const passes::PipelineOptions& more) {
-  const lang::Library library = lang::Library::embedded();
-  const Result<material::Document> document =
-      readMaterials((sourceFolder() / "bench/works/w1.gltf").string());
-  EXPECT_TRUE(document);
-  gltf::VertexAttributes attributes;
-  attributes.normal = attributes.tangent = true;
-  attributes.texCoord = {true, true, false, false};
-  Diagnostics warnings;
-  const graph::Graph graph = buildGraph(document->materials[0], attributes, {}, warnings);
-  lower::LowerOptions options;
-  options.parameters = lower::ParameterMode::Baked;
-  Result<ir::Module> module = lower::lower(graph, library, options);
-  EXPECT_TRUE(module);
-  passes::PipelineOptions pipeline = more;
-  pipeline.lights = {false, {{"directional", 1}}};
-  pipeline.relaxed = 0.05;
-  passes::runPipeline(*module, pipeline);
-  return std::move(*module);
+  return relaxedModules(sourceFolder() / "bench/works/w1.gltf", more).at(0);
+}
+
+/// A choice that takes a form, however many there are.
+passes::Choose takes(size_t form) {
+  return [form](std::span<const ir::Module> forms) -> std::optional<passes::Choice> {
+    return passes::Choice{std::min(form, forms.size() - 1), "the test", 1, 0};
+  };
+}
+
+void expectValid(const ir::Module& module, const std::string& name) {
+  const schedule::Program program = schedule::schedule(module, ir::Stage::Fragment);
+  const std::vector<uint32_t> words = targets::writeSpirv(module, program, {});
+  EXPECT_EQ(halvesOf(words), std::pair(true, true)) << name;
+  for (const Diagnostic& wrong : check::validate(words, false, name)) ADD_FAILURE() << wrong.message;
+  const auto vertex = targets::writeSpirv(module, schedule::schedule(module, ir::Stage::Vertex), {});
+  EXPECT_EQ(halvesOf(vertex), std::pair(false, false)) << name;
+  ir::Module legal = module;
+  targets::legalize(legal);
+  const schedule::Program printed = schedule::schedule(legal, ir::Stage::Fragment);
+  const std::pair<Target, std::string_view> types[] = {{Target::Glsl, "float16_t"},
+                                                       {Target::Hlsl, "min16float"},
+                                                       {Target::Wgsl, "enable f16;"},
+                                                       {Target::GlslGl, ""},
+                                                       {Target::Essl, ""}};
+  for (const auto& [target, type] : types) {
+    const std::string text = targets::printText(legal, printed, target, "");
+    if (type.empty()) {
+      EXPECT_FALSE(has(text, "f16") || has(text, "float16")) << name;
+    } else {
+      EXPECT_TRUE(has(text, type) || has(text, "f16vec")) << name << " " << targetName(target);
+    }
+    if (target == Target::Wgsl) continue;  // glslang has none
+    const Result<check::Spirv> compiled = check::compile(text, target, check::Stage::Fragment, name);
+    EXPECT_TRUE(compiled) << text << (compiled ? "" : compiled.error()[0].message);
+    if (compiled && target == Target::Glsl) {
+      EXPECT_EQ(halvesOf(*compiled), std::pair(true, true)) << name;
+    }
+  }
+}
+
+TEST(Halves, AreValidInEachLanguage) {
+  size_t halved = 0;
+  std::vector<std::filesystem::path> files = findFiles(sourceFolder() / "examples", ".gltf");
+  for (const auto& file : findFiles(sourceFolder() / "bench/works", ".gltf")) files.push_back(file);
+  passes::PipelineOptions options;
+  options.half = true;
+  for (size_t i = 0; i < files.size(); ++i) {
+    options.choose = takes(i % 2 == 0 ? 1 : 3);
+    for (const ir::Module& module : relaxedModules(files[i], options)) {
+      if (!module.half || !module.half->used) continue;
+      ++halved;
+      expectValid(module, files[i].filename().string());
+    }
+  }
+  EXPECT_GT(halved, 20U);
+}
+
+TEST(Halves, AreSaid) {
+  Options options;
+  options.targets = {Target::Spirv};
+  options.relaxed = 0.05;
+  options.half = options.programs_model = true;  // by the model the same on every machine
+  options.parameters = Parameters::Baked;
+  Messages said;
+  const Scene scene = Scene::load((sourceFolder() / "bench/works/w0.gltf").string(), options, said);
+  ASSERT_TRUE(scene);
+  Graph graph = scene.graph(0, kUnusedAttributes, options, said);
+  ASSERT_TRUE(graph);
+  const Shader shader = graph.generate(options, said);
+  ASSERT_TRUE(shader);
+  ASSERT_TRUE(shader.reflection().half);
+  EXPECT_EQ(shader.reflection().half->by, "model");
+  EXPECT_TRUE(has(shader.interfaceJson(), "\"half\""));
 }
 
 TEST(Halves, FormsKeepToTheBound) {
