@@ -155,6 +155,9 @@ struct Options {
   /// part of the colour, or of the light where that is more: fragment operations have it as far as ranges and
   /// propagated errors prove that (docs/intervals.md). At most 0.5; 0 for none.
   double relaxed = 0;
+  /// Of what is relaxed, that which is cheaper with types of 16 bits has them and nothing else is relaxed
+  /// (docs/intervals.md): of Spirv, Glsl, Hlsl, Msl and Wgsl.
+  bool half = false;
   /// How hard fragment stages are searched for cheaper forms (docs/optimize.md): 0 not at all, 1 among those
   /// that are equal but for rounding, 2 longer, and among approximations, too.
   uint32_t optimize = 0;

@@ -129,6 +129,14 @@ struct RelaxedFigures {
   size_t conversions = 0;            ///< numbers that pass between the two precisions
 };
 
+/// Whether what is relaxed has types of 16 bits (Options::half): the device needs `shaderFloat16` of Vulkan,
+/// "shader-f16" of WebGPU then.
+struct HalfFigures {
+  bool used = false;
+  std::string by;                    ///< who counted the cycles: a driver, or "model"
+  double cycles = 0, of_cycles = 0;  ///< of the fragment stage with them and without
+};
+
 /// What a search for cheaper forms has found (Options::optimize).
 struct OptimizedFigures {
   uint32_t level = 0;
@@ -170,6 +178,7 @@ struct Reflection {
   size_t proved = 0;  ///< operations that are defined for all inputs
   std::vector<OperationProof> unproved;  ///< the others that have a domain (docs/intervals.md)
   std::optional<RelaxedFigures> relaxed;
+  std::optional<HalfFigures> half;
   std::optional<OptimizedFigures> optimized;
   /// What requestDevice() of WebGPU must be asked for beyond its defaults.
   std::vector<std::pair<std::string, size_t>> webgpu_limits;

@@ -38,6 +38,7 @@ const std::vector<Row>& rows() {
       {"unused", Decides::Graph, [](Options& o) { o.unused = true; }},
       {"spirv_route", Decides::SpirvCode, [](Options& o) { o.spirv_route = SpirvRoute::Glslang; }},
       {"relaxed", Decides::Module, [](Options& o) { o.relaxed = 0.01; }},
+      {"half", Decides::Module, [](Options& o) { o.half = true; }},
       {"optimize", Decides::Module, [](Options& o) { o.optimize = 1; }},
       {"optimize_error", Decides::Module, [](Options& o) { o.optimize_error = 0.001; }},
       {"optimize_for", Decides::Module, [](Options& o) { o.optimize_for = "navi21"; }},

@@ -186,6 +186,44 @@ void dim(Subject& subject) {
   }
 }
 
+/// `--half`, with types of 16 bits wherever they may be.
+TEST(ParityHalf, KeepsToTheBoundOnTheDevice) {
+  if (device() == nullptr || !device()->halves()) GTEST_SKIP() << "no device with shaderFloat16";
+  size_t halved = 0;
+  double closest = 0;
+  for (const NamedGraph& graph : someGraphs(baked(), everything() ? 1 : 4, 0)) {
+    Result<ir::Module> module = lower::lower(graph.graph, library(), {lower::ParameterMode::Baked, true});
+    ASSERT_TRUE(module) << graph.name;
+    passes::PipelineOptions options;
+    options.lights = baked().lights;
+    options.relaxed = 0.05;
+    options.half = true;
+    options.choose = [](std::span<const ir::Module> forms) -> std::optional<passes::Choice> {
+      return passes::Choice{forms.size() - 1, "the test", 1, 0};
+    };
+    passes::runPipeline(*module, options);
+    if (!module->half || !module->half->used) continue;
+    ++halved;
+    Subject plain = materialSubject(graph, baked(), 1024, halved);
+    dim(plain);
+    Subject subject = withModule(plain, std::move(*module));
+    const auto of = [](const std::vector<std::vector<float>>& outputs) {
+      std::vector<std::vector<double>> numbers;
+      for (const auto& output : outputs) numbers.emplace_back(output.begin(), output.end());
+      return numbers;
+    };
+    const auto usual = of(onDevice(plain, FragmentRoute::Direct));
+    for (const FragmentRoute route : {FragmentRoute::Direct, FragmentRoute::Glsl}) {
+      const double off = difference(usual, of(onDevice(subject, route)));
+      constexpr double kFloats = 1e-3;  // what else is rounded, on both sides
+      EXPECT_LE(off, subject.module.relaxed_bound + kFloats) << graph.name;
+      closest = std::max(closest, off / subject.module.relaxed_bound);
+    }
+  }
+  EXPECT_GT(halved, 3U);
+  EXPECT_GT(closest, 1e-3);  // else nothing was rounded
+}
+
 TEST(ParityOptimized, ApproximationsKeepToTheProvedError) {
   constexpr double kError = 0.02;
   size_t approximated = 0;

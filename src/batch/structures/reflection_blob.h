@@ -95,6 +95,10 @@ void fields(Archive& archive, Reflection& of) {
   archive(relaxed, figures.bound, figures.operations, figures.of_operations, figures.cycles,
           figures.of_cycles, figures.conversions);
   if (relaxed) of.relaxed = figures;
+  HalfFigures types = of.half.value_or(HalfFigures());
+  bool half = of.half.has_value();
+  archive(half, types.used, types.by, types.cycles, types.of_cycles);
+  if (half) of.half = types;
   OptimizedFigures search = of.optimized.value_or(OptimizedFigures());
   bool optimized = of.optimized.has_value();
   archive(optimized, search.level, search.family, search.by, search.cycles, search.of_cycles,

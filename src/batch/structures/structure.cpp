@@ -193,7 +193,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
                                             other,
                                             setting.options.binding == BindingModel::Bindless,
                                             setting.options.binding == BindingModel::Arrays,
-                                            setting.options.static_samplers});
+                                            setting.options.static_samplers,
+                                            setting.options.half});
 }
 
 }  // namespace

@@ -395,6 +395,14 @@ std::vector<ValueId> withoutLoners(const ir::Dag& dag, std::span<const ValueId> 
 
 std::vector<ValueId> lightsOf(const ir::Module& module) { return Lights(module).all(); }
 
+bool onlyMoves(Op op) { return moves(op); }
+
+Relaxation relaxationOf(const ir::Module& module, std::span<const ValueId> operations) {
+  Propagation propagation(module);
+  const double bound = propagation.set(operations);
+  return {propagation.relaxed(), bound};
+}
+
 double relaxedBound(const ir::Module& module, std::span<const ValueId> values) {
   std::vector<ValueId> operations;
   for (const ValueId id : values) {

@@ -28,6 +28,12 @@ Relaxation relax(const ir::Module& module, double error);
 /// each is at most 1 that holds; a grows with them as the colour does. Infinite where nothing is proved.
 double relaxedBound(const ir::Module& module, std::span<const ir::ValueId> values);
 
+/// These operations of the module, what only moves their results, and the bound.
+Relaxation relaxationOf(const ir::Module& module, std::span<const ir::ValueId> operations);
+
+/// True of what moves numbers and changes none but their signs.
+bool onlyMoves(ir::Op op);
+
 /// What relaxedBound() takes for light: fields, parameters and texels; ascending.
 std::vector<ir::ValueId> lightsOf(const ir::Module& module);
 

@@ -300,6 +300,7 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
     made.relaxed = {module.relaxed_bound, cost.operations, cost.all,
                     cost.cycles,          cost.all_cycles, cost.conversions};
   }
+  if (module.half) made.half = {module.half->used, module.half->by, module.half->cycles, module.half->plain};
   if (module.optimized) {
     const ir::Optimized& of = *module.optimized;
     made.optimized = {

@@ -632,6 +632,15 @@ void members(A& a, Of<A, RelaxedFigures>& of) {
 }
 
 template <class A>
+void members(A& a, Of<A, HalfFigures>& of) {
+  a.is("the types of 16 bits");
+  a("used", of.used);
+  a("by", of.by);
+  a("cycles", of.cycles);
+  a("of_cycles", of.of_cycles);
+}
+
+template <class A>
 void members(A& a, Of<A, OptimizedFigures>& of) {
   a.is("the search");
   a("level", of.level);
@@ -681,6 +690,7 @@ void members(A& a, Of<A, Reflection>& of) {
   ProofsOf<A> proofs{of};
   a("proofs", proofs);
   a.some("relaxed", of.relaxed);
+  a.some("half", of.half);
   a.some("optimized", of.optimized);
 }
 

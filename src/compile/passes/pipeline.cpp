@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "analysis/relax.h"
 #include "ir/canonical.h"
 #include "support/digest.h"
 
@@ -19,6 +20,23 @@ struct Pass {
 
 /// `--optimize`: the search, and who chooses of what it has found.
 void optimizeFragment(ir::Module& module, const PipelineOptions& options);
+
+/// `--half`: gives types of 16 bits to what is cheaper with them.
+void takeHalves(ir::Module& module, const PipelineOptions& options) {
+  if (!options.half || !module.dag.anyRelaxed()) return;
+  std::vector<double> gains;
+  std::vector<ir::Module> forms = halves(module, options.relaxed, gains);
+  const auto best = static_cast<size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
+  const double plain = analysis::relaxedCost(module).all_cycles;
+  Choice choice{best, "model", plain, plain - gains[best]};
+  if (options.choose && forms.size() > 1) {
+    if (std::optional<Choice> other = options.choose(forms)) choice = std::move(*other);
+  }
+  // As fast with conversions is slower on some other device.
+  const bool used = choice.index > 0 && choice.cycles < choice.plain;
+  if (used) module = std::move(forms[choice.index]);
+  module.half = ir::Half{used, choice.by, choice.plain, used ? choice.cycles : choice.plain};
+}
 
 constexpr std::array kPasses{
     Pass{{"lights",
@@ -50,6 +68,8 @@ constexpr std::array kPasses{
     // Behind all that changes values.
     Pass{{"relax", "with `--relaxed`: marks what may be computed at half precision"},
          [](ir::Module& m, const PipelineOptions& o) { relax(m, o.relaxed); }},
+    Pass{{"half", "with `--half`: gives types of 16 bits to what is cheaper with them"},
+         [](ir::Module& m, const PipelineOptions& o) { takeHalves(m, o); }},
     Pass{{"bindless",
           "with `--binding bindless`: makes elements of lists of objects and materials, and of arrays of "
           "textures"},
@@ -91,6 +111,7 @@ void optimizeFragment(ir::Module& module, const PipelineOptions& options) {
                                    [](const Pass& pass) { return pass.info.name == "optimize"; });
     PipelineOptions silent = options;
     silent.after = nullptr;
+    silent.half = false;
     silent.bindless = silent.arrays = false;  // what is drawn with is compared as it is bound plainly
     std::vector<ir::Module> forms;
     for (const optimize::Candidate& candidate : found) {

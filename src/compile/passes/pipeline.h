@@ -34,6 +34,7 @@ struct PipelineOptions {
   bool bindless = false;         ///< Options::binding
   bool arrays = false;           ///< the same
   bool static_samplers = false;  ///< Options::static_samplers
+  bool half = false;             ///< Options::half
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().

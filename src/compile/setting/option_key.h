@@ -25,7 +25,7 @@ template <class Each>
 void eachOption(const Options& options, Each each) {
   const auto& [profile, as, simplify, template_name, targets, parameters, binding, static_samplers, lights,
                switches, ibl, multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused,
-               properties, spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live,
+               properties, spirv_route, relaxed, half, optimize, optimize_error, optimize_for, debug, live,
                node_directories, node_texts, materialx_directories, materialx_texts, document_texts, jobs,
                cache, cache_size, depfile, packed, shard, limits, allow, cache_key, argument_buffers, sync,
                programs, fallback, weights, programs_report, programs_model, pipelines] = options;
@@ -49,6 +49,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Graph, properties);
   each(Decides::SpirvCode, spirv_route);
   each(Decides::Module, relaxed);
+  each(Decides::Module, half);
   each(Decides::Module, optimize);
   each(Decides::Module, optimize_error);
   each(Decides::Module, optimize_for);

@@ -144,6 +144,10 @@ Diagnostics checkReading(const Options& options) {
     add(wrong, "out-of-range", fmt::format("Options::relaxed is {}", options.relaxed),
         "it must be from 0 to 0.5");
   }
+  if (options.half && options.relaxed == 0) {
+    add(wrong, "no-half", "types of 16 bits are asked for, and nothing is relaxed",
+        "allow an error by `relaxed`, such as 0.01, or leave `half` out");
+  }
   if (options.optimize > 0 && optimize::families().empty()) {
     add(wrong, "no-search", "this build of Lacquer does not search for cheaper forms",
         "leave `optimize` at 0; the program and the native library do");

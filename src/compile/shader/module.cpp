@@ -139,7 +139,8 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
                                             {},
                                             options.binding == BindingModel::Bindless,
                                             options.binding == BindingModel::Arrays,
-                                            options.static_samplers});
+                                            options.static_samplers,
+                                            options.half});
 }
 
 Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {

@@ -55,7 +55,13 @@ public:
   /// `written`: by value id, what stands for a value in place of its variable or its computation.
   Printer(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
           const std::vector<Expression>* written = nullptr)
-      : dialect_(dialect), module_(module), dag_(module.dag), program_(program), written_(written) {}
+      : dialect_(dialect),
+        module_(module),
+        dag_(module.dag),
+        program_(program),
+        written_(written),
+        halves_(written == nullptr && !dialect.halfType(Type::Float).empty() && module.half &&
+                module.half->used) {}
 
   void statements(Text& text) const;
   std::string root(ValueId id) const { return use(id).text; }
@@ -64,12 +70,20 @@ public:
 
 private:
   /// The value where it is used: its variable if it has one.
-  Expression use(ValueId id) const;
+  Expression use(ValueId id) const { return in(id, false); }
+  /// With 16 bits or with 32, whatever it was computed with.
+  Expression in(ValueId id, bool half) const;
+  /// As it was computed.
+  Expression own(ValueId id) const;
+  bool half(ValueId id) const { return halves_ && dag_.relaxed(id) && ir::isFloating(dag_[id].type); }
+  std::string_view typeOf(ValueId id) const {
+    return half(id) ? dialect_.halfType(dag_[id].type) : dialect_.type(dag_[id].type);
+  }
   Expression constant(ValueId id) const;
   Expression input(const ir::Input& input) const;
   Expression blockField(const ir::Input& input) const;
   Expression construct(ValueId id) const;
-  Expression swizzle(const ir::Value& value) const;
+  Expression swizzle(ValueId id) const;
   Expression element(const ir::Value& value) const;
   std::string carriedName(const ir::Value& carried) const;
   /// The argument list of a function of ops.def.
@@ -95,9 +109,22 @@ private:
   const ir::Dag& dag_;
   const schedule::Program& program_;
   const std::vector<Expression>* written_;
+  const bool halves_;  ///< what is relaxed has types of 16 bits
 };
 
-Expression Printer::use(ValueId id) const {
+Expression Printer::in(ValueId id, bool half) const {
+  const Type type = dag_[id].type;
+  if (!ir::isFloating(type) || this->half(id) == half) return own(id);
+  const std::string_view to = half ? dialect_.halfType(type) : dialect_.type(type);
+  const bool number = half && type != Type::Float && dag_.isConstant(id);
+  if (!number) return {fmt::format("{}({})", to, own(id).text)};
+  std::string list;
+  for (int i = 0; i < ir::componentCount(type); ++i)
+    list += (i == 0 ? "" : ", ") + dialect_.literal(dag_.constantOf(id)[static_cast<size_t>(i)]).text;
+  return {fmt::format("{}({})", to, list)};
+}
+
+Expression Printer::own(ValueId id) const {
   if (written_ != nullptr) return (*written_)[id];
   const std::string& name = program_.names[id];
   return name.empty() ? compute(id) : Expression{dialect_.name(name)};
@@ -105,6 +132,7 @@ Expression Printer::use(ValueId id) const {
 
 Expression Printer::read(ValueId user, size_t index) const {
   const ValueId id = dag_[user].args[index];
+  if (halves_) return in(id, half(user));
   const Passing passing = dialect_.precisions() ? passingOf(dag_, user, index) : Passing::AsItIs;
   if (passing == Passing::AsItIs) return use(id);
   return {fmt::format("{}({})", passing == Passing::Lowered ? kLower : kRaise, use(id).text)};
@@ -113,9 +141,9 @@ Expression Printer::read(ValueId user, size_t index) const {
 Expression Printer::operand(ValueId user, size_t index) const {
   const ir::Value& value = dag_[user];
   const ValueId id = value.args[index];
-  const Expression expression = read(user, index);
-  return lateOperand(dag_, value) == static_cast<int>(index) ? dialect_.late(dag_[id].type, expression)
-                                                             : expression;
+  if (lateOperand(dag_, value) != static_cast<int>(index)) return read(user, index);
+  const Expression late = dialect_.late(dag_[id].type, half(user) ? use(id) : read(user, index));
+  return half(user) ? Expression{fmt::format("{}({})", dialect_.halfType(dag_[id].type), late.text)} : late;
 }
 
 Expression Printer::compute(ValueId id) const {
@@ -124,7 +152,7 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Constant) return constant(id);
   if (value.op == Op::Input) return input(dag_.inputOf(id));
   if (value.op == Op::Construct) return construct(id);
-  if (value.op == Op::Swizzle) return swizzle(value);
+  if (value.op == Op::Swizzle) return swizzle(id);
   if (value.op == Op::Element) return element(value);
   if (value.op == Op::TextureAt)
     return {dialect_.textureAt(module_.textures[dag_.inputOf(value.args[0]).field], argument(value.args[1]))};
@@ -228,18 +256,20 @@ std::string Printer::carriedName(const ir::Value& carried) const {
 Expression Printer::construct(ValueId id) const {
   const ir::Value& value = dag_[id];
   if (value.count == 1 && dag_[value.args[0]].type == Type::Float) {
+    if (half(id)) return dialect_.halfSplat(value.type, read(id, 0));
     return dialect_.splat(value.type, read(id, 0), dag_.isConstant(value.args[0]));
   }
   std::string list;
   for (size_t k = 0; k < value.count; ++k) list += (list.empty() ? "" : ", ") + read(id, k).text;
-  return {fmt::format("{}({})", dialect_.type(value.type), list)};
+  return {fmt::format("{}({})", typeOf(id), list)};
 }
 
-Expression Printer::swizzle(const ir::Value& value) const {
+Expression Printer::swizzle(ValueId id) const {
+  const ir::Value& value = dag_[id];
   std::string picks;
   for (int i = 0; i < ir::componentCount(value.type); ++i)
     picks += "xyzw"[ir::swizzleComponent(value.payload, i)];
-  return {dialect_.swizzle(value.type, parenthesized(use(value.args[0]), Precedence::Postfix), picks)};
+  return {dialect_.swizzle(value.type, parenthesized(read(id, 0), Precedence::Postfix), picks)};
 }
 
 std::string Printer::arguments(ValueId id) const {
@@ -255,7 +285,9 @@ std::string Printer::arguments(ValueId id) const {
     const bool splat = beside && !dialect_.takesFloat(value.op, {types.data(), value.count}, i);
     const Expression text = this->operand(id, i);
     list += i == 0 ? "" : ", ";
-    list += splat ? dialect_.splat(value.type, text, dag_.isConstant(operand)).text : text.text;
+    list += !splat     ? text.text
+            : half(id) ? dialect_.halfSplat(value.type, text).text
+                       : dialect_.splat(value.type, text, dag_.isConstant(operand)).text;
   }
   return list;
 }
@@ -331,7 +363,7 @@ void Printer::next(Text& text, const Statement& s) const {
   const std::string name = use(s.value).text;
   if (!s.name.empty()) return text.line(fmt::format("{} = {};", name, dialect_.name(s.name)));
   const ir::Value& value = dag_[s.next];
-  const bool written = program_.names[s.next].empty() && value.count == 2;
+  const bool written = program_.names[s.next].empty() && value.count == 2 && !half(s.next);
   const std::string_view spelling = written ? dialect_.spelling(value.op) : "";
   const bool commutes = spelling == "+" || spelling == "*";
   const size_t own = value.args[0] == s.value ? 0 : 1;
@@ -356,6 +388,9 @@ void Printer::statement(Text& text, const Statement& s) const {
   switch (s.kind) {
     case StatementKind::Section: section(text, s.term); return;
     case StatementKind::Let:
+      if (half(s.value))
+        return text.line(dialect_.halfVariable(dag_[s.value].type, dialect_.name(program_.names[s.value]),
+                                               compute(s.value).text));
       text.line((dialect_.precisions() && dag_.relaxed(s.value) ? "mediump " : "") +
                 dialect_.variable(dag_[s.value].type, dialect_.name(program_.names[s.value]),
                                   compute(s.value).text, false));
@@ -538,6 +573,10 @@ Expression Dialect::select(const Expression& condition, const Expression& yes, c
 }
 
 Expression Dialect::late(Type, const Expression& number) const { return number; }
+
+std::string Dialect::halfVariable(Type type, std::string_view name, std::string_view value) const {
+  return fmt::format("{} {} = {};", halfType(type), name, value);
+}
 
 std::string Dialect::variable(Type type, std::string_view name, std::string_view value, bool) const {
   return fmt::format("{} {} = {};", this->type(type), name, value);

@@ -116,6 +116,14 @@ public:
 
   /// True where precisions are part of the language: what the Dag says is relaxed is `mediump`.
   virtual bool precisions() const { return false; }
+  /// The type of 16 bits beside one of 32 (ir::Half); empty where the language has none.
+  virtual std::string_view halfType(ir::Type) const { return {}; }
+  /// A vector of 16 bits with one number in all components.
+  virtual Expression halfSplat(ir::Type type, const Expression& x) const {
+    return {std::string(halfType(type)) + '(' + x.text + ')'};
+  }
+  /// A variable of 16 bits with its value.
+  virtual std::string halfVariable(ir::Type type, std::string_view name, std::string_view value) const;
   /// A variable with its value; `changes`: what a loop sums or carries.
   virtual std::string variable(ir::Type type, std::string_view name, std::string_view value,
                                bool changes) const;

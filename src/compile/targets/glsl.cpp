@@ -24,12 +24,13 @@ struct GlslRow {
   bool varying_locations;  ///< `location =` between the stages
   bool precisions;         ///< precision statements
   bool half;               ///< `mediump` means something
+  bool types;              ///< numbers of 16 bits
   bool storage;            ///< storage buffers; without them lists are textures
 };
 
-constexpr GlslRow kVulkan = {"450", true, true, true, false, true, true};
-constexpr GlslRow kOpenGl = {"450", false, true, true, false, false, true};
-constexpr GlslRow kEssl300 = {"300 es", false, false, false, true, true, false};
+constexpr GlslRow kVulkan = {"450", true, true, true, false, true, true, true};
+constexpr GlslRow kOpenGl = {"450", false, true, true, false, false, false, true};
+constexpr GlslRow kEssl300 = {"300 es", false, false, false, true, true, false, false};
 
 class Glsl final : public Dialect {
 public:
@@ -42,6 +43,11 @@ public:
   std::string depth(std::string_view) const override { return "gl_FragDepth"; }
 
   bool precisions() const override { return row_.half; }
+
+  std::string_view halfType(Type type) const override {
+    constexpr std::string_view kTypes[] = {"float16_t", "f16vec2", "f16vec3", "f16vec4"};
+    return row_.types ? kTypes[ir::componentCount(type) - 1] : "";
+  }
 
   Expression splat(Type type, const Expression& x, bool) const override {
     return {fmt::format("{}({})", ir::typeName(type), x.text)};
@@ -66,6 +72,12 @@ public:
       text.blank();
       text.line("#extension GL_EXT_nonuniform_qualifier : require");
     }
+    const bool halves =
+        row_.types && program.stage == ir::Stage::Fragment && module.half && module.half->used;
+    if (halves) {
+      text.blank();
+      text.line("#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require");
+    }
     if (row_.precisions) precisions(text, module, program);
     constants(text, module, program);
     for (uint32_t index : program.blocks) block(text, module.blocks[index]);
@@ -73,7 +85,7 @@ public:
     attributes(text, module, program);
     varyings(text, module, program);
     outputs(text, module, program);
-    if (row_.half) passings(text, module, program);
+    if (row_.half && !halves) passings(text, module, program);
     text.blank();
     text.line("void main() {");
   }

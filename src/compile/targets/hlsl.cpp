@@ -88,6 +88,16 @@ public:
     return {};
   }
 
+  /// At least 16 bits, of all shader models; DXC's -enable-16bit-types makes them 16.
+  std::string_view halfType(Type type) const override {
+    constexpr std::string_view kTypes[] = {"min16float", "min16float2", "min16float3", "min16float4"};
+    return kTypes[ir::componentCount(type) - 1];
+  }
+  Expression halfSplat(Type type, const Expression& x) const override {
+    const auto count = static_cast<size_t>(ir::componentCount(type));
+    return {parenthesized(x, Precedence::Postfix) + '.' + std::string(count, 'x')};
+  }
+
   std::string_view spelling(ir::Op op) const override { return ir::info(op).hlsl; }
   std::string_view position() const override { return "out_position"; }
   std::string_view frontFacing() const override { return "in_front_facing"; }

@@ -121,6 +121,14 @@ public:
     return {};
   }
 
+  std::string_view halfType(Type type) const override {
+    constexpr std::string_view kTypes[] = {"f16", "vec2h", "vec3h", "vec4h"};
+    return kTypes[ir::componentCount(type) - 1];
+  }
+  std::string halfVariable(Type type, std::string_view name, std::string_view value) const override {
+    return variable(type, name, value, false);
+  }
+
   std::string_view spelling(Op op) const override {
     // Not a switch: the other operations are spelled as in GLSL.
     if (op == Op::InverseSqrt) return "inverseSqrt";
@@ -234,6 +242,10 @@ public:
             std::string_view head) const override {
     text.comments(head);
     bool first = head.empty();
+    if (program.stage == ir::Stage::Fragment && module.half && module.half->used) {
+      text.line("enable f16;");
+      first = false;
+    }
     const auto blank = [&] {
       if (!first) text.blank();
       first = false;

@@ -155,6 +155,7 @@ constexpr Row<lacquer_options> kRows[] = {
        if (value.is_number()) to.options.relaxed = value.get<double>();
        return value.is_number();
      }},
+    {"half", kTruth, setBool<&Options::half>},
     {"optimize", "a whole number",
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.optimize); }},
     {"optimize_error", "a number",

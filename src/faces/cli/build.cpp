@@ -24,6 +24,7 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
   if (options.spirv_route == SpirvRoute::Glslang) add({"--spirv-from", "glslang"});
   if (options.debug) add({"--debug"});
   if (options.relaxed != 0) add({"--relaxed", fmt::format("{}", options.relaxed)});
+  if (options.half) add({"--half"});
   if (options.optimize != 0) add({"--optimize", fmt::format("{}", options.optimize)});
   if (options.optimize_error != 0) add({"--error", fmt::format("{}", options.optimize_error)});
   if (options.optimize != 0 && options.programs_model) add({"--model-costs"});

@@ -126,6 +126,8 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
   verb.add_option("--relaxed", flags.options.relaxed,
                   "the part of a colour, such as 0.01, that half precision may change (docs/intervals.md)")
       ->check(CLI::Range(0.0, 0.5));
+  verb.add_flag("--half", flags.options.half,
+                "types of 16 bits for what --relaxed allows, where they are cheaper (docs/intervals.md)");
   verb.add_option("--optimize", flags.options.optimize,
                   "how hard fragment stages are searched for cheaper forms, 0 to 2 (docs/optimize.md)")
       ->check(CLI::Range(0, 2))

@@ -34,7 +34,8 @@ Subject subjectOf(const ir::Module& module, const Options& options) {
 }  // namespace
 
 bool choosesByDriver(const Options& options) {
-  if (options.optimize == 0 || options.programs_model || !unavailable().empty()) return false;
+  if ((options.optimize == 0 && !options.half) || options.programs_model || !unavailable().empty())
+    return false;
   // One that cannot be told from another would choose for it in a cache.
   if (driverIdentity().empty()) return false;
   return std::find(kFamilies.begin(), kFamilies.end(), familyOf(options)) != kFamilies.end();

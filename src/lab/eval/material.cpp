@@ -485,6 +485,7 @@ void EvalMaterial::place(const passes::LightFacts& lights) {
   passes::PipelineOptions pipeline;
   pipeline.lights = lit(lights);
   pipeline.relaxed = options_.relaxed;
+  pipeline.half = options_.half;
   pipeline.optimize = optimization(options_);
   pipeline.choose = cost::chooserOf(options_);
   passes::runPipeline(module_, pipeline);

@@ -49,6 +49,14 @@ bool take(Device::State& state, VkPhysicalDevice physical) {
   state.family = graphicsFamily(state.vk, physical);
   if (properties.properties.apiVersion < VK_API_VERSION_1_1 || state.family == UINT32_MAX) return false;
   state.physical = physical;
+  // In the core since 1.2, though not of every device.
+  VkPhysicalDeviceShaderFloat16Int8Features halves{};
+  halves.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES;
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  if (properties.properties.apiVersion >= VK_API_VERSION_1_2) features.pNext = &halves;
+  state.vk.GetPhysicalDeviceFeatures2(physical, &features);
+  state.halves = halves.shaderFloat16 == VK_TRUE;
   state.limits = properties.properties.limits;
   state.processor = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   state.name = properties.properties.deviceName;
@@ -72,6 +80,10 @@ std::string makeDevice(Device::State& state) {
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
+  VkPhysicalDeviceShaderFloat16Int8Features halves{};
+  halves.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES;
+  halves.shaderFloat16 = VK_TRUE;
+  if (state.halves) info.pNext = &halves;
   const VkResult result = state.vk.CreateDevice(state.physical, &info, nullptr, &state.handle);
   if (result != VK_SUCCESS) {
     return fmt::format("{} cannot be opened (vkCreateDevice: {})", state.name, static_cast<int>(result));
@@ -112,6 +124,7 @@ const std::string& Device::name() const { return state_->name; }
 const std::string& Device::driver() const { return state_->driver; }
 uint32_t Device::subTexelBits() const { return state_->limits.subTexelPrecisionBits; }
 uint32_t Device::mostInputs() const { return state_->mostInputs(); }
+bool Device::halves() const { return state_->halves; }
 
 #else
 
@@ -127,6 +140,7 @@ const std::string& Device::name() const { return state_->none; }
 const std::string& Device::driver() const { return state_->none; }
 uint32_t Device::subTexelBits() const { return 0; }
 uint32_t Device::mostInputs() const { return 0; }
+bool Device::halves() const { return false; }
 Result<Outcome> Device::run(const Work&) const {
   return lacquer::fail("vulkan-unavailable", {}, "there is no device");
 }

@@ -12,7 +12,7 @@ namespace lacquer::vulkan {
 
 // clang-format off
 #define LACQUER_RUN_FUNCTIONS(X) \
-  X(EnumeratePhysicalDevices) X(GetPhysicalDeviceProperties2) X(GetPhysicalDeviceQueueFamilyProperties) \
+  X(EnumeratePhysicalDevices) X(GetPhysicalDeviceProperties2) X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceQueueFamilyProperties) \
   X(GetPhysicalDeviceMemoryProperties) X(GetPhysicalDeviceFormatProperties) X(CreateDevice) X(GetDeviceQueue) \
   X(AllocateMemory) X(FreeMemory) X(MapMemory) X(CreateBuffer) X(DestroyBuffer) X(GetBufferMemoryRequirements) \
   X(BindBufferMemory) X(CreateImage) X(DestroyImage) X(GetImageMemoryRequirements) X(BindImageMemory) \
@@ -42,6 +42,7 @@ struct Device::State {
   VkPhysicalDeviceLimits limits{};
   VkPhysicalDeviceMemoryProperties memory{};
   bool filters_floats = false;  ///< bilinear filtering of 32-bit floats
+  bool halves = false;          ///< shaderFloat16
   bool processor = false;       ///< shaders run on the CPU, in this process
   std::string name, driver;
 

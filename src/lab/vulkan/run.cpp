@@ -508,6 +508,15 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
   return {};
 }
 
+/// Whether a shader asks for numbers of 16 bits.
+bool hasHalves(const std::vector<uint32_t>& words) {
+  constexpr uint32_t kCapability = 17, kFloat16 = 9, kOpcode = 0xffff, kHeader = 5;
+  for (size_t at = kHeader; at + 1 < words.size() && (words[at] & kOpcode) == kCapability; at += 2) {
+    if (words[at + 1] == kFloat16) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<Outcome> Device::run(const Work& work) const {
@@ -515,6 +524,12 @@ Result<Outcome> Device::run(const Work& work) const {
   if (!interface) return tl::make_unexpected(interface.error());
   if (const auto problem = problemOf(*state_, work, *interface)) {
     return tl::make_unexpected(Diagnostics{*problem});
+  }
+  // Drivers trust what they are given.
+  if (!state_->halves && hasHalves(work.fragment)) {
+    return lacquer::fail("vulkan-halves", {},
+                         fmt::format("{} has no numbers of 16 bits (shaderFloat16)", state_->name),
+                         "leave `half` out, or evaluate on the CPU");
   }
   const Result<std::vector<uint32_t>> vertex = passthroughVertex(*interface);
   if (!vertex) return tl::make_unexpected(vertex.error());

@@ -101,6 +101,8 @@ public:
   uint32_t subTexelBits() const;
   /// Inputs that a fragment stage may have in run().
   uint32_t mostInputs() const;
+  /// Shaders may have numbers of 16 bits.
+  bool halves() const;
 
   /// Errors: "spirv-reflection"; "vulkan-interface" when `work` lacks what the shader reads;
   /// "vulkan-unsupported" when the device's limits do not suffice; "vulkan-failed" when a call fails. The

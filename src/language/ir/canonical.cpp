@@ -99,7 +99,7 @@ private:
     number(value.op);
     number(value.type);
     number(value.rate);
-    number(dag_.relaxed(id));
+    number(static_cast<uint8_t>(dag_.relaxed(id) ? precision_ : 0));
     number(value.count);
     text(dag_.nameOf(id));
     if (value.op == Op::Swizzle || value.op == Op::Column || value.op == Op::SumOverLights ||
@@ -179,6 +179,7 @@ private:
 
   const Module& module_;
   const Dag& dag_;
+  const uint8_t precision_ = module_.half && module_.half->used ? 2 : 1;  ///< of what is relaxed
   std::string bytes_;
   std::vector<uint32_t> numbers_;  ///< from 1, in the order in which they are met; 0: not yet
   uint32_t next_ = 0;

@@ -236,6 +236,7 @@ public:
   void relax(ValueId id);
   bool relaxed(ValueId id) const { return id < relaxed_.size() && relaxed_[id]; }
   bool anyRelaxed() const { return !relaxed_.empty(); }
+  void relaxNothing() { relaxed_.clear(); }
 
   // Order. A rewrite appends values, yet what replaces an early value belongs where that stood: values have a
   // rank, which is their id unless setRank() gave another. It never takes part in identity.

@@ -208,6 +208,13 @@ struct Optimized {
   double error = 0;              ///< by which approximations change a colour, at most: proved
 };
 
+/// Whether relaxed operations have types of 16 bits (passes/half.cpp).
+struct Half {
+  bool used = false;
+  std::string by;                ///< who counted, as above
+  double plain = 0, cycles = 0;  ///< of the fragment stage at 32 bits, and with those types
+};
+
 struct Module {
   std::string template_name;
   Dag dag;
@@ -225,6 +232,7 @@ struct Module {
   uint32_t material_textures = 0;  ///< the flat number of the material's first texture
   double relaxed_bound = 0;        ///< what its relaxed operations may change of a colour (analysis/relax.h)
   std::optional<Optimized> optimized{};
+  std::optional<Half> half{};
   std::vector<std::string> displaces{};  ///< the template's givens that the vertices have elsewhere
   bool sums_lights = false;              ///< an output of the template is a sum over the lights
   bool bindless = false;                 ///< its objects and materials are elements of lists

@@ -33,6 +33,10 @@ constexpr std::array<uint32_t, ir::kOpCount> kOpcodes = opcodes();
 /// What lone_component_ says of a value that is needed whole; below it, 1 + the component.
 constexpr uint8_t kWhole = 0xff;
 
+/// What splats_ has of a value: as vectors of 2, 3 and 4 components of 32 bits, of 16 bits, and itself
+/// converted to the other of the two.
+constexpr size_t kForms = 7, kHalfSplats = 3, kConverted = 6;
+
 }  // namespace
 
 Body::Body(const ir::Module& module, const schedule::Program& program, const Interface& interface,
@@ -44,10 +48,11 @@ Body::Body(const ir::Module& module, const schedule::Program& program, const Int
       globals_(globals),
       debug_(options.debug),
       relaxed_(options.relaxed),
+      half_(module.half && module.half->used),
       live_(program.live),
       loops_(dag_, live_),
       ids_(dag_.size(), 0),
-      splats_(dag_.size() * 3, 0),
+      splats_(dag_.size() * kForms, 0),
       lone_component_(dag_.size(), 0) {
   constexpr size_t kWordsPerValue = 6;
   code_.reserve(live_.size() * kWordsPerValue + 64);
@@ -81,7 +86,7 @@ void Body::findFusedProducts() {
       const bool together =
           (product.rate == Rate::Light) == (sum.rate == Rate::Light) && loops_.of(operand) == loops_.of(id);
       // One instruction has one precision.
-      if (!alike || !together || relaxed(id) != relaxed(operand)) continue;
+      if (!alike || !together || relaxed(id) != relaxed(operand) || half(id) != half(operand)) continue;
       product_in_[id] = static_cast<uint8_t>(1 + k);
       if (uses[operand] != 1) continue;
       fused_[operand] = 1;
@@ -129,7 +134,24 @@ uint32_t Body::write() {
 
 // -- values --
 
-uint32_t Body::value(ValueId id) {
+/// A value with 16 bits or with 32, whatever it was computed with.
+uint32_t Body::in(ValueId id, bool half) {
+  if (!ir::isFloating(dag_[id].type) || this->half(id) == half) return own(id);
+  const Type type = dag_[id].type;
+  if (half && dag_.isConstant(id)) return globals_.half(type, dag_.constantOf(id).data());
+  const size_t slot = id * kForms + kConverted;
+  if (splats_[slot] != 0) return splats_[slot];
+  const uint32_t from = own(id);
+  const uint32_t to = globals_.type(half ? halfKindOf(type) : kindOf(type));
+  const uint32_t made = globals_.newId();
+  code_.op(spv::OpFConvert, to, made, from);
+  splats_[slot] = made;
+  if (!open_.empty()) open_.back().splats.push_back(static_cast<uint32_t>(slot));
+  return made;
+}
+
+/// A value as it was computed.
+uint32_t Body::own(ValueId id) {
   if (ids_[id] != 0) return ids_[id];
   const uint32_t made = make(id);
   ids_[id] = made;
@@ -174,8 +196,9 @@ uint32_t Body::special(ValueId id) {
 uint32_t Body::fusedSum(ValueId id, size_t product) {
   const ir::Value& sum = dag_[id];
   const ir::Value& factors = dag_[sum.args[product]];
-  std::array<uint32_t, 3> operands{value(factors.args[0]), value(factors.args[1]),
-                                   value(sum.args[1 - product])};
+  const bool half = this->half(id);
+  std::array<uint32_t, 3> operands{in(factors.args[0], half), in(factors.args[1], half),
+                                   in(sum.args[1 - product], half)};
   if (sum.op == Op::Sub) {
     uint32_t& negative = operands[product == 0 ? 2 : 0];
     negative = instruction(id, {ir::SpirvSet::Core, spv::OpFNegate}, &negative, 1);
@@ -189,7 +212,7 @@ uint32_t Body::operation(ValueId id) {
   Instruction what{ir::info(v.op).spirv_set, kOpcodes[static_cast<size_t>(v.op)]};
   assert(what.set != ir::SpirvSet::None && "placed, and its loop is before it");
   std::array<uint32_t, 4> operands{};
-  for (size_t k = 0; k < v.count; ++k) operands[k] = operand(v, k);
+  for (size_t k = 0; k < v.count; ++k) operands[k] = operand(id, k);
   if (v.op == Op::Mul && dag_[v.args[0]].type != dag_[v.args[1]].type) {
     what.opcode = spv::OpVectorTimesScalar;
     if (dag_[v.args[0]].type == Type::Float) std::swap(operands[0], operands[1]);
@@ -199,26 +222,30 @@ uint32_t Body::operation(ValueId id) {
 }
 
 /// The id of an operand as the instruction needs it. SPIR-V has no broadcast but OpVectorTimesScalar's.
-uint32_t Body::operand(const ir::Value& user, size_t index) {
+uint32_t Body::operand(ValueId by, size_t index) {
+  const ir::Value& user = dag_[by];
   const ValueId id = user.args[index];
   const Signature signature = ir::info(user.op).signature;
   const bool map = signature == Signature::Map && user.op != Op::Mul && dag_[id].type == Type::Float;
   const bool condition = signature == Signature::Select && index == 0;
   const bool splat = ir::isFloatVector(user.type) && (map || condition);
-  return splat ? this->splat(id, user.type) : value(id);
+  return splat ? this->splat(id, user.type, half(by)) : in(id, half(by));
 }
 
 /// A vector as wide as `like` with the scalar, a Float or a Bool, in all components.
-uint32_t Body::splat(ValueId scalar, Type like) {
+uint32_t Body::splat(ValueId scalar, Type like, bool half) {
   if (dag_.isConstant(scalar) && dag_[scalar].type == Type::Float) {
-    return globals_.splat(like, dag_.constantOf(scalar)[0]);
+    const double x = dag_.constantOf(scalar)[0];
+    const std::array<double, 4> all = {x, x, x, x};
+    return half ? globals_.half(like, all.data()) : globals_.vector(like, all.data());
   }
   const auto width = static_cast<size_t>(ir::componentCount(like));
-  const size_t slot = scalar * size_t{3} + width - 2;
-  if (splats_[slot] != 0) return splats_[slot];
-  const uint32_t component = value(scalar);
   const bool condition = dag_[scalar].type == Type::Bool;
-  const uint32_t type = globals_.type(condition ? boolKind(like) : kindOf(like));
+  half = half && !condition;
+  const size_t slot = scalar * kForms + (half ? kHalfSplats : 0) + width - 2;
+  if (splats_[slot] != 0) return splats_[slot];
+  const uint32_t component = in(scalar, half);
+  const uint32_t type = globals_.type(condition ? boolKind(like) : half ? halfKindOf(like) : kindOf(like));
   const uint32_t id = globals_.newId();
   code_.begin(spv::OpCompositeConstruct);
   code_.word(type);
@@ -342,9 +369,9 @@ uint32_t Body::column(ValueId id) {
 
 uint32_t Body::construct(ValueId id) {
   const ir::Value& v = dag_[id];
-  if (v.count == 1 && dag_[v.args[0]].type == Type::Float) return splat(v.args[0], v.type);
+  if (v.count == 1 && dag_[v.args[0]].type == Type::Float) return splat(v.args[0], v.type, half(id));
   std::array<uint32_t, 4> parts{};
-  for (size_t k = 0; k < v.count; ++k) parts[k] = value(v.args[k]);
+  for (size_t k = 0; k < v.count; ++k) parts[k] = in(v.args[k], half(id));
   return instruction(id, {ir::SpirvSet::Core, spv::OpCompositeConstruct}, parts.data(), v.count);
 }
 
@@ -360,11 +387,11 @@ uint32_t Body::swizzle(ValueId id) {
     if (dag_[from].op == Op::Input && dag_.inputOf(from).kind == InputKind::SpecConstant) {
       return interface_.constant_components[dag_.inputOf(from).field].at(component);
     }
-    const std::array<uint32_t, 2> operands = {value(from), component};
+    const std::array<uint32_t, 2> operands = {in(from, half(id)), component};
     return instruction(id, {ir::SpirvSet::Core, spv::OpCompositeExtract}, operands.data(), 2);
   }
   std::array<uint32_t, 6> operands{};
-  operands[0] = operands[1] = value(from);
+  operands[0] = operands[1] = in(from, half(id));
   const auto count = static_cast<size_t>(ir::componentCount(v.type));
   for (size_t i = 0; i < count; ++i) {
     operands[2 + i] = static_cast<uint32_t>(ir::swizzleComponent(v.payload, static_cast<int>(i)));
@@ -440,7 +467,8 @@ uint32_t Body::component(uint32_t vector, uint32_t index) {
 /// Writes the instruction that computes a value. Its operands are written already, so that what stands
 /// between two OpLines is of one term.
 uint32_t Body::instruction(ValueId id, const Instruction& what, const uint32_t* operands, size_t count) {
-  const uint32_t type = globals_.type(dag_[id].type);
+  const Type of = dag_[id].type;
+  const uint32_t type = globals_.type(half(id) ? halfKindOf(of) : kindOf(of));
   const bool extended = what.set == ir::SpirvSet::Ext;
   const uint32_t set = extended ? globals_.glslSet() : 0;
   const uint32_t made = result(id);
@@ -621,7 +649,7 @@ void Body::hoist(const ir::Loop& loop) {
   for (const ValueId id : loops_.bodyOf(number)) {
     const ir::Value& v = dag_[id];
     for (size_t k = 0; k < v.count; ++k) {
-      if (outside(v.args[k])) operand(v, k);
+      if (outside(v.args[k])) operand(id, k);
     }
   }
   for (const ir::Carry& carry : loop.carries) {
@@ -653,7 +681,7 @@ void Body::hoist(const std::vector<ValueId>& sums) {
   for (const ValueId id : body) {
     const ir::Value& v = dag_[id];
     for (size_t k = 0; k < v.count; ++k) {
-      if (dag_[v.args[k]].rate != Rate::Light) operand(v, k);
+      if (dag_[v.args[k]].rate != Rate::Light) operand(id, k);
     }
   }
 }

@@ -43,13 +43,15 @@ private:
   };
 
   // values
-  uint32_t value(ir::ValueId id);
+  uint32_t value(ir::ValueId id) { return in(id, false); }
+  uint32_t in(ir::ValueId id, bool half);
+  uint32_t own(ir::ValueId id);
   uint32_t make(ir::ValueId id);
   uint32_t special(ir::ValueId id);
   uint32_t operation(ir::ValueId id);
   uint32_t fusedSum(ir::ValueId id, size_t product);
-  uint32_t operand(const ir::Value& user, size_t index);
-  uint32_t splat(ir::ValueId scalar, ir::Type like);
+  uint32_t operand(ir::ValueId user, size_t index);
+  uint32_t splat(ir::ValueId scalar, ir::Type like, bool half);
   uint32_t constant(ir::ValueId id);
   uint32_t input(ir::ValueId id);
   uint32_t nonUniform(uint32_t made);
@@ -67,7 +69,8 @@ private:
   uint32_t lightCount();
   uint32_t instruction(ir::ValueId id, const Instruction& what, const uint32_t* operands, size_t count);
   uint32_t result(ir::ValueId id);
-  bool relaxed(ir::ValueId id) const { return relaxed_ && dag_.relaxed(id); }
+  bool relaxed(ir::ValueId id) const { return relaxed_ && !half_ && dag_.relaxed(id); }
+  bool half(ir::ValueId id) const { return half_ && dag_.relaxed(id) && ir::isFloating(dag_[id].type); }
 
   // statements
   void statement(const schedule::Statement& statement);
@@ -97,6 +100,7 @@ private:
   Globals& globals_;
   const bool debug_;
   const bool relaxed_;  ///< what the Dag says is relaxed counts
+  const bool half_;     ///< and has types of 16 bits
   Words code_;
 
   const std::vector<ir::ValueId>& live_;
@@ -104,7 +108,7 @@ private:
   std::vector<uint8_t> product_in_;      ///< by value: of a sum, 1 + the operand that it multiplies itself
   std::vector<uint8_t> fused_;           ///< by value: a product that is part of the one sum that reads it
   std::vector<uint32_t> ids_;            ///< by value: its id, 0 while it has none here
-  std::vector<uint32_t> splats_;         ///< three a value: of 2, 3 and 4 components
+  std::vector<uint32_t> splats_;         ///< kForms a value: its splats and what it is converted to
   std::vector<uint8_t> lone_component_;  ///< by value, see findLoneComponents
   std::vector<Loop> open_;               ///< the loops around what is written, the outermost first
   uint32_t block_ = 0;                   ///< the label of the block being written

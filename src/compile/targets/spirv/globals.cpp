@@ -9,6 +9,23 @@
 
 namespace lacquer::targets::spirv {
 
+namespace {
+
+/// The number of 16 bits nearest to x, which one of them holds; what is too small to be normal is 0.
+uint32_t halfBits(double x) {
+  constexpr int kBias = 15, kBits = 10;
+  const uint32_t sign = std::signbit(x) ? 0x8000U : 0;
+  if (!(std::abs(x) >= 0x1p-14)) return sign;
+  int exponent = 0;
+  const double fraction = std::frexp(std::min(std::abs(x), 65504.0), &exponent);  // in [0.5, 1)
+  const double whole = std::nearbyint(std::ldexp(fraction, kBits + 1));           // in [1024, 2048]
+  // One that rounds up to 2048 goes on into the exponent.
+  const auto bits = static_cast<uint32_t>(whole) - (1U << kBits);
+  return sign | ((static_cast<uint32_t>(exponent - 1 + kBias) << kBits) + bits);
+}
+
+}  // namespace
+
 Kind kindOf(ir::Type type) {
   switch (type) {
     case ir::Type::Bool: return Kind::Bool;
@@ -37,6 +54,12 @@ Kind kindOf(ir::Type type) {
   }
   assert(false && "not a type");
   return Kind::Void;
+}
+
+Kind halfKindOf(ir::Type type) {
+  constexpr std::array kByWidth = {Kind::Half, Kind::HalfVec2, Kind::HalfVec3, Kind::HalfVec4};
+  assert(ir::componentCount(type) <= 4);
+  return kByWidth[static_cast<size_t>(ir::componentCount(type) - 1)];
 }
 
 Kind imageKindOf(ir::Type texture) {
@@ -95,6 +118,10 @@ uint32_t Globals::type(Kind kind) {
     case Kind::Vec2: vector(Kind::Float, 2); break;
     case Kind::Vec3: vector(Kind::Float, 3); break;
     case Kind::Vec4: vector(Kind::Float, 4); break;
+    case Kind::Half: declarations.op(spv::OpTypeFloat, known = newId(), 16); break;
+    case Kind::HalfVec2: vector(Kind::Half, 2); break;
+    case Kind::HalfVec3: vector(Kind::Half, 3); break;
+    case Kind::HalfVec4: vector(Kind::Half, 4); break;
     case Kind::Bool2: vector(Kind::Bool, 2); break;
     case Kind::Bool3: vector(Kind::Bool, 3); break;
     case Kind::Bool4: vector(Kind::Bool, 4); break;
@@ -159,6 +186,14 @@ uint32_t Globals::vector(ir::Type type, const double* components) {
 uint32_t Globals::splat(ir::Type type, double x) {
   const std::array<double, 4> components = {x, x, x, x};
   return vector(type, components.data());
+}
+
+uint32_t Globals::half(ir::Type type, const double* components) {
+  const auto count = static_cast<size_t>(ir::componentCount(type));
+  std::array<uint32_t, 4> ids{};
+  for (size_t i = 0; i < count; ++i)
+    ids[i] = constant(spv::OpConstant, this->type(Kind::Half), {halfBits(components[i])}, 1);
+  return count == 1 ? ids[0] : constant(spv::OpConstantComposite, this->type(halfKindOf(type)), ids, count);
 }
 
 uint32_t Globals::specNumber(uint32_t spec_id, double x) {

@@ -25,6 +25,10 @@ enum class Kind : uint8_t {
   Vec2,
   Vec3,
   Vec4,
+  Half,
+  HalfVec2,
+  HalfVec3,
+  HalfVec4,
   Bool2,
   Bool3,
   Bool4,
@@ -44,6 +48,9 @@ enum class Kind : uint8_t {
 inline constexpr size_t kKinds = static_cast<size_t>(Kind::Main) + 1;
 
 Kind kindOf(ir::Type type);
+
+/// Of 16 bits, beside a Float or a vector of them.
+Kind halfKindOf(ir::Type type);
 
 /// The image that a texture's type has beside a sampler.
 Kind imageKindOf(ir::Type texture);
@@ -73,6 +80,10 @@ public:
   /// `components` holds at least as many as the type has.
   uint32_t vector(ir::Type type, const double* components);
   uint32_t splat(ir::Type type, double x);
+
+  /// The same of 16 bits.
+  uint32_t half(ir::Type type, const double* components);
+  bool halvesUsed() const { return types_[static_cast<size_t>(Kind::Half)] != 0; }
 
   /// A specialization constant of its own, with what it is until the pipeline says otherwise.
   uint32_t specNumber(uint32_t spec_id, double x);

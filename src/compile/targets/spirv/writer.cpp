@@ -26,6 +26,7 @@ std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Progr
     head.word(word);
   }
   head.op(spv::OpCapability, spv::CapabilityShader);
+  if (globals.halvesUsed()) head.op(spv::OpCapability, spv::CapabilityFloat16);
   if (globals.sizesAsked()) head.op(spv::OpCapability, spv::CapabilityImageQuery);
   if (globals.arraysAsked()) {
     head.op(spv::OpCapability, spv::CapabilityShaderNonUniform);
