@@ -11,6 +11,7 @@
 #include "lod/estimate.h"
 #include "lod/share.h"
 #include "setting/messages.h"
+#include "setting/option_key.h"
 #include "setting/simplify.h"
 #include "shader/print.h"
 
@@ -232,6 +233,44 @@ void LodMaterial::readTextures(EvalMaterial& evaluated) {
   }
 }
 
+/// Everything that results depend on: the build, the file, its images, its geometry, the options, and who
+/// counts cycles.
+Key LodMaterial::keyOf(const EvalMaterial& evaluated) const {
+  KeyBuilder key;
+  key.text("levels").key(given_.store->base).key(given_.file).text(given_.subject.pointer());
+  key.text(exact_graph_).text(shaderId(*exact_module_, given_.language));
+  addOptions(given_.options, {Decides::Graph, Decides::Module}, key);
+  for (const std::string& texel : given_.texels) key.text(texel);
+  key.number(size_).number(radius_);
+  const bool by_driver = cost::unavailable().empty();
+  key.number(by_driver).text(by_driver ? cost::driverIdentity() : std::string());
+  for (const auto& [name, texture] : evaluated.textures()) {
+    key.text(name).number(texture.constant.has_value());
+    for (const double x : texture.constant.value_or(std::array<double, 4>())) key.number(x);
+    if (texture.constant) continue;
+    key.number(texture.lookup.s).number(texture.lookup.t);
+    key.number(texture.lookup.nearest).number(texture.lookup.srgb);
+    key.number(texture.image->width).number(texture.image->height).number(texture.image->layers);
+    std::visit(
+        [&](const auto& texels) {
+          key.number(sizeof texels[0]);
+          const auto* bytes = reinterpret_cast<const char*>(texels.data());
+          key.key(lacquer::keyOf({bytes, texels.size() * sizeof texels[0]}));
+        },
+        texture.image->texels);
+  }
+  KeyBuilder mesh;
+  for (const eval::Point& point : given_.mesh.vertices) {
+    const auto all = [&](const auto& numbers) {
+      for (const double x : numbers) mesh.number(x);
+    };
+    all(point.position), all(point.n), all(point.t), all(point.color0);
+    for (const auto& uv : point.uv) all(uv);
+  }
+  for (const uint32_t corner : given_.mesh.triangles) mesh.number(corner);
+  return key.key(mesh.finish()).number(given_.mesh.double_sided).finish();
+}
+
 Result<lod::Tried> LodMaterial::open(Messages& messages) {
   Result<graph::Graph> graph = graphOf({});
   if (!graph) return tl::make_unexpected(std::move(graph.error()));
@@ -249,6 +288,7 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
   if (Result<void> lowered = evaluated.lower(given_.subject, given_.language, true, "", messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
   readTextures(evaluated);
+  if (given_.store != nullptr) memory_ = lod::Memory(*given_.store, keyOf(evaluated));
   for (const bool triangles : {false, true}) {
     Result<std::vector<preview::Shot>> shot = shots({}, size_, triangles);
     if (!shot) return tl::make_unexpected(std::move(shot.error()));
@@ -326,11 +366,23 @@ Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Modul
 
 std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lod::Words>& sets) {
   std::vector<ir::Module> fresh;
+  std::vector<bool> remembered(sets.size(), false);
   std::vector<std::pair<std::string, const lod::Words*>> of_fresh;
-  for (const lod::Words& set : sets) {
-    Result<ir::Module> made = module(set);
-    if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings)
+  for (size_t i = 0; i < sets.size(); ++i) {
+    const lod::Words& set = sets[i];
+    if (const std::optional<lod::Found> known = memory_.found(set)) {
+      remembered[i] = true;
+      ++remembered_;
+      if (known->shader.empty()) continue;
+      ids_[set] = known->shader;
+      figures_.emplace(known->shader, known->figures);
       continue;
+    }
+    Result<ir::Module> made = module(set);
+    if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings) {
+      memory_.keep(set, {});
+      continue;
+    }
     std::string id = shaderId(*made, given_.language);
     const bool known = figures_.contains(id) || std::any_of(of_fresh.begin(), of_fresh.end(),
                                                             [&](const auto& one) { return one.first == id; });
@@ -364,6 +416,7 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     const auto id = ids_.find(sets[i]);
     const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
     if (found == figures_.end()) continue;
+    if (!remembered[i]) memory_.keep(sets[i], {id->second, found->second});
     tried[i] = lod::Tried{sets[i], found->second.cost, found->second.error.delta_e};
   }
   return tried;
@@ -458,8 +511,15 @@ std::vector<double> LodMaterial::scalesOf(const lod::Words& words, const std::ve
   return scales;
 }
 
+std::optional<lod::Words> LodMaterial::fitted(const lod::Words& words) const {
+  if (std::optional<std::optional<lod::Words>> known = memory_.fitted(words)) return std::move(*known);
+  std::optional<lod::Words> made = fit(words);
+  memory_.keepFitted(words, made);
+  return made;
+}
+
 /// Levenberg and Marquardt's least squares over the pictures' colours, with differences for derivatives.
-std::optional<lod::Words> LodMaterial::fitted(const lod::Words& given) const {
+std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
   constexpr int kRounds = 4;
   constexpr double kStep = 0.02;
   constexpr double kLeast = 0.2;

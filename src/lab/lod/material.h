@@ -10,6 +10,7 @@
 #include "cost/cost.h"
 #include "eval/material.h"
 #include "lod/search.h"
+#include "lod/store.h"
 #include "preview/shot.h"
 
 namespace lacquer {
@@ -33,6 +34,8 @@ public:
     const Strings& texels;
     const preview::Mesh& mesh;  ///< the file's own geometry; without triangles where there is none
     double radius;              ///< of the ball where there is no geometry
+    const LevelStore* store = nullptr;  ///< null where nothing is kept
+    Key file{};                         ///< of what the subject was read from, where something is
   };
   /// What is given must outlive this. Pictures to search by are `size` pixels wide.
   LodMaterial(const Given& given, uint32_t size);
@@ -60,6 +63,8 @@ public:
   /// "Mesa 22.3.6"; empty where the costs are estimates.
   const std::string& driver() const { return driver_; }
   size_t measured() const { return figures_.size(); }
+  /// Sets of words that an earlier run had measured.
+  size_t remembered() const { return remembered_; }
   /// Of the ball in the pictures: the geometry's, where there is one.
   double radius() const { return radius_; }
 
@@ -92,6 +97,8 @@ private:
                                                       const std::vector<double>& scales,
                                                       bool triangles) const;
   void readTextures(EvalMaterial& evaluated);
+  Key keyOf(const EvalMaterial& evaluated) const;
+  std::optional<lod::Words> fit(const lod::Words& words) const;
 
   Given given_;
   uint32_t size_;
@@ -111,6 +118,8 @@ private:
   std::string driver_;
   cost::Driver compiler_{cost::kFamilies[0]};
   std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
+  lod::Memory memory_;
+  size_t remembered_ = 0;
 };
 
 }  // namespace lacquer
