@@ -357,9 +357,10 @@ private:
     for (size_t i = 0; i < made.found.levels.size(); ++i) {
       Level& level = made.found.levels[i];
       level.figures = (*costs)[i];
-      const LevelFigures& found = subject.figures(level.simplify);
-      level.figures.error = found.error;
-      level.figures.error_on_geometry = found.error_on_geometry;
+      const Result<LevelFigures> found = subject.seen(level.simplify);
+      if (!found) return tl::make_unexpected(found.error());
+      level.figures.error = found->error;
+      level.figures.error_on_geometry = found->error_on_geometry;
       if (!levels.empty() && level.figures.cost >= levels.back().figures.cost) continue;
       levels.push_back(std::move(level));
       kept.push_back(std::move(modules[i]));

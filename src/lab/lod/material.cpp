@@ -14,6 +14,7 @@
 #include "setting/option_key.h"
 #include "setting/simplify.h"
 #include "shader/print.h"
+#include "support/jobs.h"
 
 namespace lacquer {
 
@@ -124,8 +125,8 @@ Result<ir::Module> LodMaterial::module(const lod::Words& words) const {
   return toModule(*graph, given_.language, optionsOf(words), given_.lights);
 }
 
-Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& words, Messages& messages,
-                                                            const Change& change) const {
+Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& words,
+                                                            Messages& messages) const {
   EvalMaterial evaluated(given_.images, optionsOf(words));
   if (Result<void> set = evaluated.setTexels(given_.texels); !set)
     return tl::make_unexpected(std::move(set.error()));
@@ -141,7 +142,6 @@ Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& wo
   if (Result<void> bound = evaluated.bindTextures(neutral, look.textures); !bound)
     return tl::make_unexpected(std::move(bound.error()));
   look.module = evaluated.module();
-  if (change) change(look.module);
   std::vector<preview::Shading> shadings;
   for (const preview::Studio& studio : studios_) {
     Result<preview::Shading> made = preview::Shading::make(look, studio);
@@ -197,15 +197,24 @@ std::vector<preview::Shot> LodMaterial::shotsOf(const std::vector<preview::Shadi
 }
 
 void LodMaterial::compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
-                          SeenDifference& seen, std::optional<SeenDifference>& on_mesh) const {
-  seen = preview::compareShots(exact, simpler);
+                          SeenDifference& seen, std::optional<SeenDifference>& on_mesh, bool flip) const {
+  seen = preview::compareShots(exact, simpler, flip);
   on_mesh.reset();
   const auto balls = static_cast<ptrdiff_t>(studios_.size());
   if (std::ssize(exact) <= balls) return;
   const auto rest = [&](const std::vector<preview::Shot>& shots) {
     return std::vector<preview::Shot>(shots.begin() + balls, shots.end());
   };
-  on_mesh = preview::compareShots(rest(exact), rest(simpler));
+  on_mesh = preview::compareShots(rest(exact), rest(simpler), flip);
+}
+
+Result<LevelFigures> LodMaterial::seen(const lod::Words& words) const {
+  LevelFigures all = figures(words);
+  const bool triangles = atVertices(words);
+  const auto shot = shots(words, size_, triangles);
+  if (!shot) return tl::make_unexpected(shot.error());
+  compare(exact_[triangles], *shot, all.error, all.error_on_geometry);
+  return all;
 }
 
 /// Which textures have images, and what their means are.
@@ -293,7 +302,8 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
     Result<std::vector<preview::Shot>> shot = shots({}, size_, triangles);
     if (!shot) return tl::make_unexpected(std::move(shot.error()));
     exact_[triangles] = std::move(*shot);
-    if (auto small = shotsWith({}, {}, {}, triangles)) small_[triangles] = std::move(*small);
+    Messages said_before;
+    if (const auto made_of = shadings({}, said_before)) small_[triangles] = shotsOf(*made_of, kFitSize, 2, triangles);
   }
   const std::vector<std::optional<lod::Tried>> measured = measure({{}});
   if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
@@ -396,17 +406,24 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
   std::future<Result<std::vector<LevelFigures>>> costing =
       std::async(how, [&] { return costs(fresh, false); });
   std::vector<LevelFigures> seen(fresh.size());
-  std::vector<bool> drawn(fresh.size(), false);
+  std::vector<uint8_t> drawn(fresh.size(), 0);  // by several threads
+  // Images are read by one thread; what is seen of the meshes is known from the exact shader's pictures.
+  std::vector<std::optional<std::vector<preview::Shading>>> made(fresh.size());
   for (size_t i = 0; i < fresh.size(); ++i) {
-    const bool triangles = atVertices(*of_fresh[i].second);
-    const auto shot = shots(*of_fresh[i].second, size_, triangles);
-    if (!shot) continue;
-    drawn[i] = true;
-    compare(exact_[triangles], *shot, seen[i].error, seen[i].error_on_geometry);
+    Messages said_before;
+    if (auto one = shadings(*of_fresh[i].second, said_before)) made[i] = std::move(*one);
   }
+  inParallel(fresh.size(), [&](size_t i) {
+    if (!made[i]) return;
+    const bool triangles = atVertices(*of_fresh[i].second);
+    const std::vector<preview::Shot> shot = shotsOf(*made[i], size_, preview::gridOf(size_), triangles);
+    compare(exact_[triangles], shot, seen[i].error, seen[i].error_on_geometry, false);
+    made[i].reset();
+    drawn[i] = 1;
+  });
   const Result<std::vector<LevelFigures>> costs = costing.get();
   for (size_t i = 0; costs && i < fresh.size(); ++i) {
-    if (!drawn[i]) continue;
+    if (drawn[i] == 0) continue;
     LevelFigures& figures = figures_.emplace(of_fresh[i].first, (*costs)[i]).first->second;
     figures.error = seen[i].error;
     figures.error_on_geometry = seen[i].error_on_geometry;
@@ -435,30 +452,33 @@ std::vector<LodMaterial::Parameter> LodMaterial::fittable(const lod::Words& word
     const bool unit = p.range.lo == 0 && p.range.hi == 1 && p.range.gap == 0;
     if (!unit || p.animated || p.type == ir::Type::Bool || p.type == ir::Type::Vec2) continue;
     const auto count = static_cast<size_t>(ir::componentCount(p.type));
+    const std::vector<double> whole(p.value.begin(), p.value.begin() + static_cast<ptrdiff_t>(count));
     // Alpha is coverage, which stays as it is.
     for (size_t c = 0; c < std::min<size_t>(count, 3); ++c) {
-      if (p.value[c] > 0 && all.size() < kMost) all.push_back({p.name, c, count, p.value[c]});
+      if (p.value[c] > 0 && all.size() < kMost)
+        all.push_back({p.name, c, count, p.value[c], whole});
     }
   }
   return all;
 }
 
-std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const lod::Words& words,
+/// Small pictures with some numbers times these.
+std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const std::vector<preview::Shading>& shadings,
                                                                  const std::vector<Parameter>& parameters,
                                                                  const std::vector<double>& scales,
                                                                  bool triangles) const {
-  const auto change = [&](ir::Module& module) {
-    for (size_t i = 0; i < parameters.size(); ++i) {
-      for (ir::Parameter& p : module.parameters) {
-        if (p.name == parameters[i].name)
-          p.value[parameters[i].component] = std::min(parameters[i].value * scales[i], 1.0);
-      }
-    }
-  };
-  Messages ignored;
-  const Result<std::vector<preview::Shading>> made = shadings(words, ignored, change);
-  if (!made) return std::nullopt;
-  return shotsOf(*made, kFitSize, 2, triangles);
+  std::map<std::string, std::vector<double>> values;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    values.try_emplace(p.name, p.whole).first->second[p.component] = std::min(p.value * scales[i], 1.0);
+  }
+  std::vector<preview::Shading> made;
+  for (const preview::Shading& shading : shadings) {
+    Result<preview::Shading> one = shading.with(values);
+    if (!one) return std::nullopt;
+    made.push_back(std::move(*one));
+  }
+  return shotsOf(made, kFitSize, 2, triangles);
 }
 
 namespace {
@@ -531,8 +551,11 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
   if (parameters.empty()) return std::nullopt;
   std::vector<double> scales = scalesOf(given, parameters);
   const bool triangles = atVertices(words);
+  Messages ignored;
+  const Result<std::vector<preview::Shading>> made = shadings(words, ignored);
+  if (!made) return std::nullopt;
   const auto labsWith = [&](const std::vector<double>& with) -> std::vector<double> {
-    const auto shots = shotsWith(words, parameters, with, triangles);
+    const auto shots = shotsWith(*made, parameters, with, triangles);
     return shots ? labsOf(*shots) : std::vector<double>();
   };
   const std::vector<double> wanted = labsOf(small_[triangles]);

@@ -57,8 +57,10 @@ public:
   Result<std::vector<preview::Shot>> shots(const lod::Words& words, uint32_t size, bool triangles) const;
   /// What two sets of pictures of one size differ by: all of them, and those of the geometry.
   void compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
-               SeenDifference& seen, std::optional<SeenDifference>& on_mesh) const;
-  /// What was found of a set that was measured.
+               SeenDifference& seen, std::optional<SeenDifference>& on_mesh, bool flip = true) const;
+  /// The same of a set that was measured with FLIP, which the search does without.
+  Result<LevelFigures> seen(const lod::Words& words) const;
+  /// What was found of a set that was measured, without FLIP.
   const LevelFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
   /// "Mesa 22.3.6"; empty where the costs are estimates.
   const std::string& driver() const { return driver_; }
@@ -73,18 +75,17 @@ public:
   Result<std::vector<LevelFigures>> costs(const std::vector<ir::Module>& modules, bool quarters);
 
 private:
-  using Change = std::function<void(ir::Module&)>;
   /// A component of a number of the material.
   struct Parameter {
     std::string name;
     size_t component = 0, components = 1;
     double value = 0;
+    std::vector<double> whole{};  ///< today's of all components
   };
 
   Options optionsOf(const lod::Words& words) const;
   Result<graph::Graph> graphOf(const lod::Words& words) const;
-  Result<std::vector<preview::Shading>> shadings(const lod::Words& words, Messages& messages,
-                                                 const Change& change = {}) const;
+  Result<std::vector<preview::Shading>> shadings(const lod::Words& words, Messages& messages) const;
   const std::vector<preview::Coverage>& coverages(const preview::Mesh& mesh, uint32_t size,
                                                   uint32_t grid) const;
   std::vector<preview::Shot> shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
@@ -92,7 +93,7 @@ private:
   double costOf(const LevelFigures& figures) const;
   static std::vector<double> scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters);
   std::vector<Parameter> fittable(const lod::Words& words) const;
-  std::optional<std::vector<preview::Shot>> shotsWith(const lod::Words& words,
+  std::optional<std::vector<preview::Shot>> shotsWith(const std::vector<preview::Shading>& shadings,
                                                       const std::vector<Parameter>& parameters,
                                                       const std::vector<double>& scales,
                                                       bool triangles) const;
