@@ -10,8 +10,10 @@ namespace lacquer {
 
 std::optional<Levels> makeLevels(const Lod& lod, const Strings& files, const Strings& materials,
                                  const Options& options, Messages& messages, const Progress& progress) {
-  if (options.cache.empty()) return lookForLevels(lod, files, materials, options, messages, progress, nullptr);
-  Diagnostics wrong = reservedNames({Cache::entriesBelow(options.cache)}, {}, {lod.output + "/manifest.json"});
+  if (options.cache.empty())
+    return lookForLevels(lod, files, materials, options, messages, progress, nullptr);
+  Diagnostics wrong =
+      reservedNames({Cache::entriesBelow(options.cache)}, {}, {lod.output + "/manifest.json"});
   for (Diagnostic& one : wrong) one.message = "this file is to be written where the cache's own are";
   report(wrong, {}, messages);
   if (!wrong.empty()) return std::nullopt;
@@ -25,8 +27,7 @@ std::optional<Levels> makeLevels(const Lod& lod, const Strings& files, const Str
   LevelStore store{baseOf(options)};
   store.load = [&](const Key& key) { return cache.get(key); };
   store.save = [&](const Key& key, std::string_view bytes) { cache.put(key, bytes); };
-  std::optional<Levels> levels =
-      lookForLevels(lod, files, materials, options, messages, progress, &store);
+  std::optional<Levels> levels = lookForLevels(lod, files, materials, options, messages, progress, &store);
   report(cache.problems(), {}, messages);
   return levels;
 }

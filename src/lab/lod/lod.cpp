@@ -304,7 +304,14 @@ private:
     for (const std::optional<lod::Tried>& one : measure(fitted)) {
       if (one) made.tried.push_back(*one);
     }
-    made.best = lod::front(made.tried);
+    // The search is by small pictures; levels are chosen by those of the size that was asked for.
+    for (lod::Tried& one : lod::front(made.tried)) {
+      const Result<LevelFigures> seen = subject.seen(one.words, false);
+      if (!seen) continue;
+      one.error = seen->error.delta_e;
+      made.best.push_back(std::move(one));
+    }
+    made.best = lod::front(std::move(made.best));
     made.found.measured = made.tried.size();
   }
 
@@ -357,7 +364,7 @@ private:
     for (size_t i = 0; i < made.found.levels.size(); ++i) {
       Level& level = made.found.levels[i];
       level.figures = (*costs)[i];
-      const Result<LevelFigures> found = subject.seen(level.simplify);
+      const Result<LevelFigures> found = subject.seen(level.simplify, true);
       if (!found) return tl::make_unexpected(found.error());
       level.figures.error = found->error;
       level.figures.error_on_geometry = found->error_on_geometry;

@@ -23,9 +23,6 @@ namespace {
 /// Interpolants that every device takes, of four numbers each.
 constexpr size_t kMostVaryings = 15;
 
-/// Pixels of the pictures that numbers are fitted to.
-constexpr uint32_t kFitSize = 32;
-
 // As in cost/cost.cpp: a child that is born while another thread allocates waits for ever with GCC's
 // address sanitizer.
 #ifdef __SANITIZE_ADDRESS__
@@ -208,12 +205,14 @@ void LodMaterial::compare(const std::vector<preview::Shot>& exact, const std::ve
   on_mesh = preview::compareShots(rest(exact), rest(simpler), flip);
 }
 
-Result<LevelFigures> LodMaterial::seen(const lod::Words& words) const {
+Result<LevelFigures> LodMaterial::seen(const lod::Words& words, bool flip) {
+  if (const auto known = memory_.seen(words, flip)) return known->figures;
   LevelFigures all = figures(words);
   const bool triangles = atVertices(words);
   const auto shot = shots(words, size_, triangles);
   if (!shot) return tl::make_unexpected(shot.error());
-  compare(exact_[triangles], *shot, all.error, all.error_on_geometry);
+  compare(exact_[triangles], *shot, all.error, all.error_on_geometry, flip);
+  memory_.keepSeen(words, flip, {ids_.at(words), all});
   return all;
 }
 
@@ -303,7 +302,10 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
     if (!shot) return tl::make_unexpected(std::move(shot.error()));
     exact_[triangles] = std::move(*shot);
     Messages said_before;
-    if (const auto made_of = shadings({}, said_before)) small_[triangles] = shotsOf(*made_of, kFitSize, 2, triangles);
+    if (const auto of = shadings({}, said_before)) {
+      small_[triangles] = shotsOf(*of, kSearched, kSearchedGrid, triangles);
+      fit_[triangles] = shotsOf(*of, kFitted, kSearchedGrid, triangles);
+    }
   }
   const std::vector<std::optional<lod::Tried>> measured = measure({{}});
   if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
@@ -416,8 +418,8 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
   inParallel(fresh.size(), [&](size_t i) {
     if (!made[i]) return;
     const bool triangles = atVertices(*of_fresh[i].second);
-    const std::vector<preview::Shot> shot = shotsOf(*made[i], size_, preview::gridOf(size_), triangles);
-    compare(exact_[triangles], shot, seen[i].error, seen[i].error_on_geometry, false);
+    const std::vector<preview::Shot> shot = shotsOf(*made[i], kSearched, kSearchedGrid, triangles);
+    compare(small_[triangles], shot, seen[i].error, seen[i].error_on_geometry, false);
     made[i].reset();
     drawn[i] = 1;
   });
@@ -455,18 +457,16 @@ std::vector<LodMaterial::Parameter> LodMaterial::fittable(const lod::Words& word
     const std::vector<double> whole(p.value.begin(), p.value.begin() + static_cast<ptrdiff_t>(count));
     // Alpha is coverage, which stays as it is.
     for (size_t c = 0; c < std::min<size_t>(count, 3); ++c) {
-      if (p.value[c] > 0 && all.size() < kMost)
-        all.push_back({p.name, c, count, p.value[c], whole});
+      if (p.value[c] > 0 && all.size() < kMost) all.push_back({p.name, c, count, p.value[c], whole});
     }
   }
   return all;
 }
 
 /// Small pictures with some numbers times these.
-std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const std::vector<preview::Shading>& shadings,
-                                                                 const std::vector<Parameter>& parameters,
-                                                                 const std::vector<double>& scales,
-                                                                 bool triangles) const {
+std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(
+    const std::vector<preview::Shading>& shadings, const std::vector<Parameter>& parameters,
+    const std::vector<double>& scales, bool triangles) const {
   std::map<std::string, std::vector<double>> values;
   for (size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& p = parameters[i];
@@ -478,7 +478,7 @@ std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const std::vect
     if (!one) return std::nullopt;
     made.push_back(std::move(*one));
   }
-  return shotsOf(made, kFitSize, 2, triangles);
+  return shotsOf(made, kFitted, kSearchedGrid, triangles);
 }
 
 namespace {
@@ -558,7 +558,7 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
     const auto shots = shotsWith(*made, parameters, with, triangles);
     return shots ? labsOf(*shots) : std::vector<double>();
   };
-  const std::vector<double> wanted = labsOf(small_[triangles]);
+  const std::vector<double> wanted = labsOf(fit_[triangles]);
   std::vector<double> now = labsWith(scales);
   if (now.size() != wanted.size()) return std::nullopt;
   double error = squares(now, wanted);

@@ -19,6 +19,10 @@ namespace lacquer {
 /// for each vertex. What a level computes more at the vertices than the exact shader counts so much.
 inline constexpr double kVertexShare = 0.125;
 
+/// Pixels of the pictures that candidates are searched by, and of those that numbers are fitted to; each with
+/// kSearchedGrid samples along each side.
+inline constexpr uint32_t kSearched = 24, kFitted = 16, kSearchedGrid = 2;
+
 /// Whether something is computed at vertices that was not: pictures are of triangles then.
 bool atVertices(const lod::Words& words);
 
@@ -32,12 +36,13 @@ public:
     const Language& language;
     const Options& options;  ///< with its names resolved
     const Strings& texels;
-    const preview::Mesh& mesh;  ///< the file's own geometry; without triangles where there is none
-    double radius;              ///< of the ball where there is no geometry
+    const preview::Mesh& mesh;          ///< the file's own geometry; without triangles where there is none
+    double radius;                      ///< of the ball where there is no geometry
     const LevelStore* store = nullptr;  ///< null where nothing is kept
     Key file{};                         ///< of what the subject was read from, where something is
   };
-  /// What is given must outlive this. Pictures to search by are `size` pixels wide.
+  /// What is given must outlive this. Pictures that levels are chosen by are `size` pixels wide; those to
+  /// search by have kSearched.
   LodMaterial(const Given& given, uint32_t size);
 
   /// Measures the exact shader. What is to be said of the material goes to `messages`.
@@ -46,8 +51,8 @@ public:
   lod::Words words() const;
   /// For lod::search(). A set that makes no shader, or one with other textures, is none.
   std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets);
-  /// The same words with a few numbers of the material fitted again to the exact pictures; nothing where that
-  /// cannot be, or changes nothing.
+  /// The same words with a few numbers of the material fitted again to the exact pictures;
+  /// nothing where that cannot be, or changes nothing.
   std::optional<lod::Words> fitted(const lod::Words& words) const;
 
   /// The shader of a set of words, placed.
@@ -58,9 +63,10 @@ public:
   /// What two sets of pictures of one size differ by: all of them, and those of the geometry.
   void compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
                SeenDifference& seen, std::optional<SeenDifference>& on_mesh, bool flip = true) const;
-  /// The same of a set that was measured with FLIP, which the search does without.
-  Result<LevelFigures> seen(const lod::Words& words) const;
-  /// What was found of a set that was measured, without FLIP.
+  /// What was found of a set that was measured, seen again by pictures of the whole size; with FLIP, which
+  /// the search does without.
+  Result<LevelFigures> seen(const lod::Words& words, bool flip);
+  /// The same as the search has it, by small pictures and without FLIP.
   const LevelFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
   /// "Mesa 22.3.6"; empty where the costs are estimates.
   const std::string& driver() const { return driver_; }
@@ -105,7 +111,8 @@ private:
   uint32_t size_;
   double radius_;
   std::vector<preview::Studio> studios_;
-  std::vector<preview::Shot> exact_[2], small_[2];  ///< to compare with; to fit to; the second of triangles
+  std::vector<preview::Shot> exact_[2], small_[2], fit_[2];  ///< to compare with; to search by; to fit
+                                                             ///< to; the second of triangles
   preview::Mesh ball_;
   /// What is seen of a mesh, by size and grid, a view for each studio; none where it cannot be drawn.
   mutable std::map<std::tuple<const preview::Mesh*, uint32_t, uint32_t>, std::vector<preview::Coverage>>

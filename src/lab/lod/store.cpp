@@ -31,8 +31,8 @@ std::optional<std::string> Memory::load(std::string_view what, const Words& word
   return store_ == nullptr ? std::nullopt : store_->load(keyOf(what, words));
 }
 
-std::optional<Found> Memory::found(const Words& words) const {
-  const std::optional<std::string> bytes = load("level", words);
+std::optional<Found> Memory::foundAs(std::string_view what, const Words& words) const {
+  const std::optional<std::string> bytes = load(what, words);
   if (!bytes) return std::nullopt;
   BlobReader blob(*bytes);
   Found found;
@@ -40,11 +40,23 @@ std::optional<Found> Memory::found(const Words& words) const {
   return blob.complete() ? std::optional(std::move(found)) : std::nullopt;
 }
 
-void Memory::keep(const Words& words, const Found& found) const {
+void Memory::keepAs(std::string_view what, const Words& words, const Found& found) const {
   if (store_ == nullptr) return;
   BlobWriter blob;
   blob(found.shader, found.figures);
-  store_->save(keyOf("level", words), blob.take());
+  store_->save(keyOf(what, words), blob.take());
+}
+
+std::optional<Found> Memory::found(const Words& words) const { return foundAs("level", words); }
+
+void Memory::keep(const Words& words, const Found& found) const { keepAs("level", words, found); }
+
+std::optional<Found> Memory::seen(const Words& words, bool flip) const {
+  return foundAs(flip ? "seen-flip" : "seen", words);
+}
+
+void Memory::keepSeen(const Words& words, bool flip, const Found& seen) const {
+  keepAs(flip ? "seen-flip" : "seen", words, seen);
 }
 
 std::optional<std::optional<Words>> Memory::fitted(const Words& words) const {

@@ -37,11 +37,16 @@ public:
 
   std::optional<Found> found(const Words& words) const;
   void keep(const Words& words, const Found& found) const;
+  /// By pictures of the whole size; with FLIP or without.
+  std::optional<Found> seen(const Words& words, bool flip) const;
+  void keepSeen(const Words& words, bool flip, const Found& seen) const;
   /// The outer one is nothing where it is not known whether numbers can be fitted.
   std::optional<std::optional<Words>> fitted(const Words& words) const;
   void keepFitted(const Words& words, const std::optional<Words>& fitted) const;
 
 private:
+  std::optional<Found> foundAs(std::string_view what, const Words& words) const;
+  void keepAs(std::string_view what, const Words& words, const Found& found) const;
   std::optional<std::string> load(std::string_view what, const Words& words) const;
   Key keyOf(std::string_view what, const Words& words) const;
 

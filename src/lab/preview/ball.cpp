@@ -201,36 +201,34 @@ constexpr std::array<std::string_view, 14> kMembers = {
     "POSITION",   "VIEW",    "NORMAL", "TANGENT",        "TEXCOORD_0", "TEXCOORD_1",      "TEXCOORD_2",
     "TEXCOORD_3", "COLOR_0", "LIGHT",  "gl_FrontFacing", "INSIDE",     "SURROUNDING_IOR", "CHANNEL"};
 
-/// The numbers of one point.
-std::span<const double> memberOf(const eval::Point& point, std::string_view name, double& number) {
-  const auto one = [&](double x) {
-    number = x;
-    return std::span<const double>(&number, 1);
-  };
-  if (name == "POSITION") return point.position;
-  if (name == "VIEW") return point.v;
-  if (name == "NORMAL") return point.n;
-  if (name == "TANGENT") return point.t;
-  if (name.starts_with("TEXCOORD_")) return point.uv[static_cast<size_t>(name[9] - '0')];
-  if (name == "COLOR_0") return point.color0;
-  if (name == "LIGHT") return point.l;
-  if (name == "gl_FrontFacing") return one(point.front_facing ? 1 : 0);
-  if (name == "INSIDE") return one(point.inside ? 1 : 0);
-  if (name == "SURROUNDING_IOR") return one(point.surrounding_ior);
-  if (name == "CHANNEL") return one(point.channel);
-  return point.random;
-}
-
 template <class PointAt>
 eval::Column columnOf(std::string_view name, size_t count, const PointAt& at) {
-  std::vector<double> values;
-  double number = 0;
-  const auto components = memberOf(eval::Point(), name, number).size();
-  values.reserve(count * components);
-  for (size_t i = 0; i < count; ++i) {
-    for (const double x : memberOf(at(i), name, number)) values.push_back(x);
+  const auto of = [&](auto get) {
+    const size_t components = get(eval::Point()).size();
+    std::vector<double> values(count * components);
+    double* to = values.data();
+    for (size_t i = 0; i < count; ++i) {
+      for (const double x : get(at(i))) *to++ = x;
+    }
+    return eval::Column::perPoint(static_cast<int>(components), std::move(values));
+  };
+  using Point = eval::Point;
+  const auto one = [](double x) { return std::array<double, 1>{x}; };
+  if (name == "POSITION") return of([](const Point& p) { return p.position; });
+  if (name == "VIEW") return of([](const Point& p) { return p.v; });
+  if (name == "NORMAL") return of([](const Point& p) { return p.n; });
+  if (name == "TANGENT") return of([](const Point& p) { return p.t; });
+  if (name.starts_with("TEXCOORD_")) {
+    const auto set = static_cast<size_t>(name[9] - '0');
+    return of([set](const Point& p) { return p.uv[set]; });
   }
-  return eval::Column::perPoint(static_cast<int>(components), std::move(values));
+  if (name == "COLOR_0") return of([](const Point& p) { return p.color0; });
+  if (name == "LIGHT") return of([](const Point& p) { return p.l; });
+  if (name == "gl_FrontFacing") return of([&](const Point& p) { return one(p.front_facing ? 1 : 0); });
+  if (name == "INSIDE") return of([&](const Point& p) { return one(p.inside ? 1 : 0); });
+  if (name == "SURROUNDING_IOR") return of([&](const Point& p) { return one(p.surrounding_ior); });
+  if (name == "CHANNEL") return of([&](const Point& p) { return one(p.channel); });
+  return of([](const Point& p) { return p.random; });
 }
 
 }  // namespace

@@ -188,8 +188,7 @@ Shot shoot(const Shading& shading, const Coverage& coverage) {
 SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b, bool flip) {
   std::vector<double> delta_e, flips;
   for (size_t i = 0; i < a.size(); ++i) {
-    const std::vector<double> map =
-        flip ? picture::flip(a[i].pixels, b[i].pixels) : std::vector<double>();
+    const std::vector<double> map = flip ? picture::flip(a[i].pixels, b[i].pixels) : std::vector<double>();
     for (const uint32_t pixel : a[i].inside) {
       if (flip) flips.push_back(map[pixel]);
       delta_e.push_back(picture::deltaE2000(picture::labOf(a[i].pixels.colors[pixel]),
