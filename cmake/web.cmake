@@ -4,7 +4,7 @@
 # Native only: the search for cheaper forms, compilers and validators, GPUs, costs, attacks, runs over folders with their
 # cache, the search for levels. Their callers are linked with web/absent/.
 set(LACQUER_ABSENT optimize check vulkan cost stress cache run lod view)
-set(LACQUER_ABSENT_FILES lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/c/exchange.cpp
+set(LACQUER_ABSENT_FILES lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/api/levels.cpp faces/c/exchange.cpp
     faces/c/findings.cpp)
 
 include(headers)

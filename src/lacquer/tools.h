@@ -2,6 +2,7 @@
 /// says what holds for every declaration.
 #pragma once
 
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -120,6 +121,12 @@ std::optional<PreviewSheet> drawPreview(const Preview& preview, const Strings& f
                                         const Strings& materials, const Options& options, Messages& messages,
                                         const Progress& progress = {});
 
+/// How far the search for levels is.
+struct LodStep {
+  std::string file, material;       ///< names
+  size_t done = 0, known = 0;       ///< materials
+  size_t measured = 0, cached = 0;  ///< of this one: shaders, and sets of words that the cache knew
+};
 /// Levels of detail (docs/lod.md).
 struct Lod {
   std::string output;   ///< the folder to write to
@@ -133,10 +140,13 @@ struct Lod {
   double radius = 1;  ///< of the ball where the file has no geometry of a material, from 1e-6 to 1e6, in the
                       ///< unit of positions (glTF: meters); else it has the geometry's
   Strings texels;     ///< as for evaluate()
+  /// Called after each few candidates, as a Progress is, which is called after each material.
+  std::function<void(const LodStep&)> step{};
 };
 /// Looks for the materials' levels (of those of the names in `materials` where that is not empty), and writes
 /// their shaders, manifest.json and a report with pictures. Nothing on an error. A material that fails is
-/// left out, with messages. Uses threads, and processes for the costs.
+/// left out, with messages. Uses threads, and processes for the costs. With a cache in the options what was
+/// measured is kept at once: a call that was ended goes on from there.
 std::optional<Levels> makeLevels(const Lod& lod, const Strings& files, const Strings& materials,
                                  const Options& options, Messages& messages, const Progress& progress = {});
 

@@ -152,6 +152,49 @@ TEST_F(Levels, AreAChainOfOneInterfaceThatIsAsMeasured) {
   }
 }
 
+TEST_F(Levels, AreLookedForFromWhereASearchWasEnded) {
+  struct Ended {};
+  Options options = quick();
+  options.cache = (folder_ / "cache").string();
+  Lod lod = chainLod(folder_ / "out");
+  Messages messages;
+  size_t steps = 0;
+  LodStep last;
+  lod.step = [&](const LodStep& step) {
+    last = step;
+    if (++steps == 4) throw Ended();
+  };
+  EXPECT_THROW(makeLevels(lod, {work("w1")}, {}, options, messages), Ended);
+  EXPECT_EQ(last.cached, 0U);
+  EXPECT_EQ(last.material, "W1");
+
+  std::vector<size_t> cached;
+  lod.step = [&](const LodStep& step) {
+    last = step;
+    cached.push_back(step.cached);
+  };
+  EXPECT_EQ(makeIn(lod, work("w1"), options)["materials"], chain()["materials"]);
+  ASSERT_GT(cached.size(), 4U);
+  for (size_t i = 0; i + 1 < 4; ++i) EXPECT_GT(cached[i + 1], cached[i]);
+  const size_t known = last.cached;
+  EXPECT_GT(known, 48U);
+
+  // All of it is known now; nothing is of a material of other numbers.
+  EXPECT_EQ(makeIn(lod, work("w1"), options)["materials"], chain()["materials"]);
+  EXPECT_GT(last.cached, known);
+  std::string other = readFile(work("w1"));
+  const size_t place = other.find("\"roughnessFactor\"");
+  ASSERT_NE(place, std::string::npos);
+  other.replace(other.find_first_of("0123456789", place), 3, "0.7");
+  std::ofstream(folder_ / "other.gltf") << other;
+  lod.step = [&](const LodStep& step) {
+    last = step;
+    throw Ended();
+  };
+  EXPECT_THROW(makeLevels(lod, {(folder_ / "other.gltf").string()}, {}, options, messages), Ended);
+  EXPECT_EQ(last.cached, 0U);
+}
+
 TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   const Options options = quick();
   const json& answer = chain();

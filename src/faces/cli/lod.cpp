@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
+
 #include "cli/answer.h"
 #include "cli/checks.h"
+#include "cli/streams.h"
 #include "cli/table.h"
 
 namespace lacquer::cli {
@@ -62,14 +65,42 @@ void printLevels(const Levels& levels) {
   fmt::print("\n{}/report.html has the pictures\n", printable(levels.output));
 }
 
+/// How far the search is: one line of a terminal, or elsewhere a line for each few shaders.
+class StepLines {
+public:
+  explicit StepLines(bool shown) : shown_(shown), terminal_(terminalWidth() > 0) {}
+  StepLines(const StepLines&) = delete;
+  StepLines& operator=(const StepLines&) = delete;
+  ~StepLines() {
+    if (terminal_ && said_ > 0) say("\n");
+  }
+
+  void operator()(const LodStep& step) {
+    constexpr size_t kApart = 50;
+    if (step.done != material_) said_ = 0;
+    material_ = step.done;
+    if (!shown_ || (!terminal_ && step.measured < said_ + kApart)) return;
+    said_ = step.measured;
+    const std::string cached = step.cached == 0 ? "" : fmt::format(", {} from the cache", step.cached);
+    say("{}material {} of {}, {}: {} shaders measured{}{}", terminal_ ? "\r" : "", step.done + 1, step.known,
+        printable(step.material), step.measured, cached, terminal_ ? "" : "\n");
+  }
+
+private:
+  bool shown_, terminal_;
+  size_t material_ = 0, said_ = 0;
+};
+
 }  // namespace
 
 int runLod(const LodFlags& flags, const std::vector<std::string>& files,
            const std::vector<std::string>& materials, const Options& options) {
-  return answerTo({flags.json, flags.quiet, "materials"}, printLevels,
-                  [&](Messages& messages, const Progress& progress) {
-                    return makeLevels(flags.lod, files, materials, options, messages, progress);
-                  });
+  return answerTo({flags.json, flags.quiet}, printLevels, [&](Messages& messages, const Progress& progress) {
+    StepLines lines(!flags.quiet);
+    Lod lod = flags.lod;
+    lod.step = std::ref(lines);
+    return makeLevels(lod, files, materials, options, messages, progress);
+  });
 }
 
 }  // namespace lacquer::cli

@@ -60,15 +60,6 @@ struct Flags : OptionFlags {
   std::vector<std::string> arguments;  ///< the program's own, as given
 };
 
-/// CLI11 takes a sign and more digits than there is room for.
-const CLI::Validator kPlainSize(
-    [](const std::string& text) {
-      constexpr size_t kDigits = 19;
-      const size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
-      return digits == 0 || digits > kDigits ? "must be a whole number of bytes, such as 500MB" : "";
-    },
-    "");
-
 /// What `gen` and `plan` have in common.
 void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
@@ -109,14 +100,7 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_flag("--properties", flags.options.properties,
                 "the manifest says which properties change a uniform, a texture or the program");
   lacquer::cli::addJobs(verb, flags);
-  verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs")
-      ->check(kNotEmpty);
-  verb.add_option("--cache-size", flags.options.cache_size, "bytes that it may take, such as 500MB (1 GiB)")
-      ->transform(CLI::AsSizeValue(false))
-      ->transform(kPlainSize);
-  verb.add_option("--cache-key", flags.options.cache_key,
-                  "a file: entries of the cache count only when they were written with its bytes")
-      ->check(kNotEmpty);
+  lacquer::cli::addCache(verb, flags);
   lacquer::cli::addSyncFlag(verb, flags);
   verb.add_flag("--time", flags.time, "the time of every stage, on stderr");
   verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
@@ -256,6 +240,7 @@ void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
   lacquer::cli::addLod(verb, lod);
   lacquer::cli::addTargetFlags(verb, flags);
   lacquer::cli::addJobs(verb, flags);
+  lacquer::cli::addCache(verb, flags);
   lacquer::cli::addAllow(verb, flags, "images");
   lacquer::cli::addSyncFlag(verb, flags);
   verb.add_flag("-q,--quiet", lod.quiet, "no table, no progress");

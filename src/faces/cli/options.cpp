@@ -18,6 +18,15 @@ namespace {
 
 constexpr int kMostJobs = 1024;  ///< more threads than that are a mistyped number
 
+/// CLI11 takes a sign and more digits than there is room for.
+const CLI::Validator kPlainSize(
+    [](const std::string& text) {
+      constexpr size_t kDigits = 19;
+      const size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+      return digits == 0 || digits > kDigits ? "must be a whole number of bytes, such as 500MB" : "";
+    },
+    "");
+
 /// "NAME=on" or "NAME=off", each.
 std::string parseSwitches(const std::vector<std::string>& texts,
                           std::map<std::string, bool, std::less<>>& switches) {
@@ -164,6 +173,17 @@ void addJobs(CLI::App& verb, OptionFlags& flags) {
   verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
       ->check(CLI::Range(0, kMostJobs))
       ->check(kWhole);
+}
+
+void addCache(CLI::App& verb, OptionFlags& flags) {
+  verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs")
+      ->check(kNotEmpty);
+  verb.add_option("--cache-size", flags.options.cache_size, "bytes that it may take, such as 500MB (1 GiB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->transform(kPlainSize);
+  verb.add_option("--cache-key", flags.options.cache_key,
+                  "a file: entries of the cache count only when they were written with its bytes")
+      ->check(kNotEmpty);
 }
 
 void addAllow(CLI::App& verb, OptionFlags& flags, const char* what) {

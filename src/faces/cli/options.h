@@ -25,6 +25,8 @@ void addTargetFlags(CLI::App& verb, OptionFlags& flags);
 void addSyncFlag(CLI::App& verb, OptionFlags& flags);
 /// --jobs.
 void addJobs(CLI::App& verb, OptionFlags& flags);
+/// --cache, --cache-size, --cache-key.
+void addCache(CLI::App& verb, OptionFlags& flags);
 /// --allow; `what` may lie in the folders: "images".
 void addAllow(CLI::App& verb, OptionFlags& flags, const char* what);
 /// --nodes, which is among the material's flags, too.

@@ -1,4 +1,6 @@
 // `lacquer lod`: levels of detail, looked for, made, measured, written.
+#include "lod/lod.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -78,8 +80,14 @@ struct Printed {
 
 class LevelSearch {
 public:
-  LevelSearch(const Lod& lod, const Options& options, Messages& messages, const Progress& progress)
-      : lod_(lod), asked_(options), options_(options), messages_(messages), progress_(progress) {}
+  LevelSearch(const Lod& lod, const Options& options, Messages& messages, const Progress& progress,
+              const LevelStore* store)
+      : lod_(lod),
+        asked_(options),
+        options_(options),
+        messages_(messages),
+        progress_(progress),
+        store_(store) {}
 
   Result<Levels> make(const Strings& files, const Strings& materials) {
     if (Result<void> good = checkLod(lod_, options_); !good)
@@ -102,6 +110,7 @@ public:
       return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
                   "`lacquer gen` lists the materials of a file");
     inputs_ = files;
+    if (!options_.cache_key.empty()) inputs_.push_back(options_.cache_key);
     if (Result<void> may = mayWrite(); !may) return tl::make_unexpected(std::move(may.error()));
     for (size_t f = 0; f < read_files.size(); ++f) {
       const Input& input = read_files[f];
@@ -135,7 +144,20 @@ private:
     std::string path;
     material::Document document;
     std::optional<graph::Graph> graph;
+    Key content{};  ///< of all that the file's text is made of, where results are kept
   };
+
+  Key contentOf(const Input& input) const {
+    KeyBuilder content;
+    if (store_ == nullptr) return {};
+    Strings files{input.path};
+    files.insert(files.end(), input.document.included.begin(), input.document.included.end());
+    for (const std::string& file : files) {
+      const Result<std::string> bytes = readFile(file);
+      content.number(bytes.has_value()).key(keyOf(bytes ? *bytes : std::string()));
+    }
+    return content.finish();
+  }
 
   void readGraph(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
     Result<graph::Graph> graph = readGraphFile(file, options_);
@@ -144,6 +166,7 @@ private:
     if (!only.empty() && std::find(only.begin(), only.end(), graph->name) == only.end()) return;
     ++known_;
     inputs.push_back({file, {}, std::move(*graph)});
+    inputs.back().content = contentOf(inputs.back());
   }
 
   void read(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
@@ -158,6 +181,7 @@ private:
     known_ +=
         static_cast<size_t>(std::count_if(document->materials.begin(), document->materials.end(), wanted));
     inputs.push_back({document->path, std::move(*document), {}});
+    inputs.back().content = contentOf(inputs.back());
     for (material::Material& material : inputs.back().document.materials) {
       if (!wanted(material)) material.index = -2;  // not asked for; its place in the list stays its number
     }
@@ -187,7 +211,8 @@ private:
     }
     // The default template and profile are named, which would build a graph.
     const Options& options = material == nullptr ? asked_ : options_;
-    LodMaterial subject({of, attributes, lights, images, *language_, options, lod_.texels, mesh, lod_.radius},
+    LodMaterial subject({of, attributes, lights, images, *language_, options, lod_.texels, mesh, lod_.radius,
+                         store_, input.content},
                         lod_.size);
     Result<lod::Tried> exact = subject.open(messages_);
     if (!exact) return tl::make_unexpected(std::move(exact.error()));
@@ -215,9 +240,25 @@ private:
     return {};
   }
 
+  /// What is measured is kept, and said, after so many sets.
+  std::vector<std::optional<lod::Tried>> inBatches(LodMaterial& subject, const std::vector<lod::Words>& sets,
+                                                   const MaterialLevels& of) const {
+    const size_t together = std::max<size_t>(16, 4 * threads());
+    std::vector<std::optional<lod::Tried>> all;
+    for (size_t i = 0; i < sets.size(); i += together) {
+      const auto begin = sets.begin() + static_cast<ptrdiff_t>(i);
+      const auto end = begin + static_cast<ptrdiff_t>(std::min(together, sets.size() - i));
+      for (std::optional<lod::Tried>& one : subject.measure({begin, end})) all.push_back(std::move(one));
+      if (lod_.step) lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered()});
+    }
+    return all;
+  }
+
   /// Everything that is worth to be tried, then the best of it with a few numbers fitted.
   void search(LodMaterial& subject, const lod::Tried& exact, LodChain& made) const {
-    const lod::Measure measure = [&](const std::vector<lod::Words>& sets) { return subject.measure(sets); };
+    const lod::Measure measure = [&](const std::vector<lod::Words>& sets) {
+      return inBatches(subject, sets, made.found);
+    };
     const lod::Subject of_word = [](const std::string& word) { return lacquer::subjectOf(word); };
     lod::Bounds bounds;
     bounds.most_error = 2 * (lod_.errors.empty() ? lod_.most_error : lod_.errors.back());
@@ -233,7 +274,14 @@ private:
     for (const std::optional<lod::Tried>& one : measure(fitted)) {
       if (one) made.tried.push_back(*one);
     }
-    made.best = lod::front(made.tried);
+    // The search is by small pictures; levels are chosen by those of the size that was asked for.
+    for (lod::Tried& one : lod::front(made.tried)) {
+      const Result<LevelFigures> seen = subject.seen(one.words, false);
+      if (!seen) continue;
+      one.error = seen->error.delta_e;
+      made.best.push_back(std::move(one));
+    }
+    made.best = lod::front(std::move(made.best));
     made.found.measured = made.tried.size();
   }
 
@@ -286,9 +334,10 @@ private:
     for (size_t i = 0; i < made.found.levels.size(); ++i) {
       Level& level = made.found.levels[i];
       level.figures = (*costs)[i];
-      const LevelFigures& found = subject.figures(level.simplify);
-      level.figures.error = found.error;
-      level.figures.error_on_geometry = found.error_on_geometry;
+      const Result<LevelFigures> found = subject.seen(level.simplify, true);
+      if (!found) return tl::make_unexpected(found.error());
+      level.figures.error = found->error;
+      level.figures.error_on_geometry = found->error_on_geometry;
       if (!levels.empty() && level.figures.cost >= levels.back().figures.cost) continue;
       levels.push_back(std::move(level));
       kept.push_back(std::move(modules[i]));
@@ -402,6 +451,7 @@ private:
   Options options_;  ///< with its names resolved
   Messages& messages_;
   const Progress& progress_;
+  const LevelStore* store_;
   std::shared_ptr<const Language> language_;
   Strings inputs_;
   std::vector<LodChain> chains_;
@@ -413,11 +463,12 @@ private:
 
 }  // namespace
 
-std::optional<Levels> makeLevels(const Lod& lod, const Strings& files, const Strings& materials,
-                                 const Options& options, Messages& messages, const Progress& progress) {
+std::optional<Levels> lookForLevels(const Lod& lod, const Strings& files, const Strings& materials,
+                                    const Options& options, Messages& messages, const Progress& progress,
+                                    const LevelStore* store) {
   Result<Levels> made;
   withJobs(options.jobs,
-           [&] { made = LevelSearch(lod, options, messages, progress).make(files, materials); });
+           [&] { made = LevelSearch(lod, options, messages, progress, store).make(files, materials); });
   return valueOf(std::move(made), {}, messages);
 }
 

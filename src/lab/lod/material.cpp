@@ -11,8 +11,10 @@
 #include "lod/estimate.h"
 #include "lod/share.h"
 #include "setting/messages.h"
+#include "setting/option_key.h"
 #include "setting/simplify.h"
 #include "shader/print.h"
+#include "support/jobs.h"
 
 namespace lacquer {
 
@@ -20,9 +22,6 @@ namespace {
 
 /// Interpolants that every device takes, of four numbers each.
 constexpr size_t kMostVaryings = 15;
-
-/// Pixels of the pictures that numbers are fitted to.
-constexpr uint32_t kFitSize = 32;
 
 // As in cost/cost.cpp: a child that is born while another thread allocates waits for ever with GCC's
 // address sanitizer.
@@ -123,8 +122,8 @@ Result<ir::Module> LodMaterial::module(const lod::Words& words) const {
   return toModule(*graph, given_.language, optionsOf(words), given_.lights);
 }
 
-Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& words, Messages& messages,
-                                                            const Change& change) const {
+Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& words,
+                                                            Messages& messages) const {
   EvalMaterial evaluated(given_.images, optionsOf(words));
   if (Result<void> set = evaluated.setTexels(given_.texels); !set)
     return tl::make_unexpected(std::move(set.error()));
@@ -140,7 +139,6 @@ Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& wo
   if (Result<void> bound = evaluated.bindTextures(neutral, look.textures); !bound)
     return tl::make_unexpected(std::move(bound.error()));
   look.module = evaluated.module();
-  if (change) change(look.module);
   std::vector<preview::Shading> shadings;
   for (const preview::Studio& studio : studios_) {
     Result<preview::Shading> made = preview::Shading::make(look, studio);
@@ -196,15 +194,26 @@ std::vector<preview::Shot> LodMaterial::shotsOf(const std::vector<preview::Shadi
 }
 
 void LodMaterial::compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
-                          SeenDifference& seen, std::optional<SeenDifference>& on_mesh) const {
-  seen = preview::compareShots(exact, simpler);
+                          SeenDifference& seen, std::optional<SeenDifference>& on_mesh, bool flip) const {
+  seen = preview::compareShots(exact, simpler, flip);
   on_mesh.reset();
   const auto balls = static_cast<ptrdiff_t>(studios_.size());
   if (std::ssize(exact) <= balls) return;
   const auto rest = [&](const std::vector<preview::Shot>& shots) {
     return std::vector<preview::Shot>(shots.begin() + balls, shots.end());
   };
-  on_mesh = preview::compareShots(rest(exact), rest(simpler));
+  on_mesh = preview::compareShots(rest(exact), rest(simpler), flip);
+}
+
+Result<LevelFigures> LodMaterial::seen(const lod::Words& words, bool flip) {
+  if (const auto known = memory_.seen(words, flip)) return known->figures;
+  LevelFigures all = figures(words);
+  const bool triangles = atVertices(words);
+  const auto shot = shots(words, size_, triangles);
+  if (!shot) return tl::make_unexpected(shot.error());
+  compare(exact_[triangles], *shot, all.error, all.error_on_geometry, flip);
+  memory_.keepSeen(words, flip, {ids_.at(words), all});
+  return all;
 }
 
 /// Which textures have images, and what their means are.
@@ -232,6 +241,44 @@ void LodMaterial::readTextures(EvalMaterial& evaluated) {
   }
 }
 
+/// Everything that results depend on: the build, the file, its images, its geometry, the options, and who
+/// counts cycles.
+Key LodMaterial::keyOf(const EvalMaterial& evaluated) const {
+  KeyBuilder key;
+  key.text("levels").key(given_.store->base).key(given_.file).text(given_.subject.pointer());
+  key.text(exact_graph_).text(shaderId(*exact_module_, given_.language));
+  addOptions(given_.options, {Decides::Graph, Decides::Module}, key);
+  for (const std::string& texel : given_.texels) key.text(texel);
+  key.number(size_).number(radius_);
+  const bool by_driver = cost::unavailable().empty();
+  key.number(by_driver).text(by_driver ? cost::driverIdentity() : std::string());
+  for (const auto& [name, texture] : evaluated.textures()) {
+    key.text(name).number(texture.constant.has_value());
+    for (const double x : texture.constant.value_or(std::array<double, 4>())) key.number(x);
+    if (texture.constant) continue;
+    key.number(texture.lookup.s).number(texture.lookup.t);
+    key.number(texture.lookup.nearest).number(texture.lookup.srgb);
+    key.number(texture.image->width).number(texture.image->height).number(texture.image->layers);
+    std::visit(
+        [&](const auto& texels) {
+          key.number(sizeof texels[0]);
+          const auto* bytes = reinterpret_cast<const char*>(texels.data());
+          key.key(lacquer::keyOf({bytes, texels.size() * sizeof texels[0]}));
+        },
+        texture.image->texels);
+  }
+  KeyBuilder mesh;
+  for (const eval::Point& point : given_.mesh.vertices) {
+    const auto all = [&](const auto& numbers) {
+      for (const double x : numbers) mesh.number(x);
+    };
+    all(point.position), all(point.n), all(point.t), all(point.color0);
+    for (const auto& uv : point.uv) all(uv);
+  }
+  for (const uint32_t corner : given_.mesh.triangles) mesh.number(corner);
+  return key.key(mesh.finish()).number(given_.mesh.double_sided).finish();
+}
+
 Result<lod::Tried> LodMaterial::open(Messages& messages) {
   Result<graph::Graph> graph = graphOf({});
   if (!graph) return tl::make_unexpected(std::move(graph.error()));
@@ -249,11 +296,16 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
   if (Result<void> lowered = evaluated.lower(given_.subject, given_.language, true, "", messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
   readTextures(evaluated);
+  if (given_.store != nullptr) memory_ = lod::Memory(*given_.store, keyOf(evaluated));
   for (const bool triangles : {false, true}) {
     Result<std::vector<preview::Shot>> shot = shots({}, size_, triangles);
     if (!shot) return tl::make_unexpected(std::move(shot.error()));
     exact_[triangles] = std::move(*shot);
-    if (auto small = shotsWith({}, {}, {}, triangles)) small_[triangles] = std::move(*small);
+    Messages said_before;
+    if (const auto of = shadings({}, said_before)) {
+      small_[triangles] = shotsOf(*of, kSearched, kSearchedGrid, triangles);
+      fit_[triangles] = shotsOf(*of, kFitted, kSearchedGrid, triangles);
+    }
   }
   const std::vector<std::optional<lod::Tried>> measured = measure({{}});
   if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
@@ -326,11 +378,23 @@ Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Modul
 
 std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lod::Words>& sets) {
   std::vector<ir::Module> fresh;
+  std::vector<bool> remembered(sets.size(), false);
   std::vector<std::pair<std::string, const lod::Words*>> of_fresh;
-  for (const lod::Words& set : sets) {
-    Result<ir::Module> made = module(set);
-    if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings)
+  for (size_t i = 0; i < sets.size(); ++i) {
+    const lod::Words& set = sets[i];
+    if (const std::optional<lod::Found> known = memory_.found(set)) {
+      remembered[i] = true;
+      ++remembered_;
+      if (known->shader.empty()) continue;
+      ids_[set] = known->shader;
+      figures_.emplace(known->shader, known->figures);
       continue;
+    }
+    Result<ir::Module> made = module(set);
+    if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings) {
+      memory_.keep(set, {});
+      continue;
+    }
     std::string id = shaderId(*made, given_.language);
     const bool known = figures_.contains(id) || std::any_of(of_fresh.begin(), of_fresh.end(),
                                                             [&](const auto& one) { return one.first == id; });
@@ -344,17 +408,24 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
   std::future<Result<std::vector<LevelFigures>>> costing =
       std::async(how, [&] { return costs(fresh, false); });
   std::vector<LevelFigures> seen(fresh.size());
-  std::vector<bool> drawn(fresh.size(), false);
+  std::vector<uint8_t> drawn(fresh.size(), 0);  // by several threads
+  // Images are read by one thread; what is seen of the meshes is known from the exact shader's pictures.
+  std::vector<std::optional<std::vector<preview::Shading>>> made(fresh.size());
   for (size_t i = 0; i < fresh.size(); ++i) {
-    const bool triangles = atVertices(*of_fresh[i].second);
-    const auto shot = shots(*of_fresh[i].second, size_, triangles);
-    if (!shot) continue;
-    drawn[i] = true;
-    compare(exact_[triangles], *shot, seen[i].error, seen[i].error_on_geometry);
+    Messages said_before;
+    if (auto one = shadings(*of_fresh[i].second, said_before)) made[i] = std::move(*one);
   }
+  inParallel(fresh.size(), [&](size_t i) {
+    if (!made[i]) return;
+    const bool triangles = atVertices(*of_fresh[i].second);
+    const std::vector<preview::Shot> shot = shotsOf(*made[i], kSearched, kSearchedGrid, triangles);
+    compare(small_[triangles], shot, seen[i].error, seen[i].error_on_geometry, false);
+    made[i].reset();
+    drawn[i] = 1;
+  });
   const Result<std::vector<LevelFigures>> costs = costing.get();
   for (size_t i = 0; costs && i < fresh.size(); ++i) {
-    if (!drawn[i]) continue;
+    if (drawn[i] == 0) continue;
     LevelFigures& figures = figures_.emplace(of_fresh[i].first, (*costs)[i]).first->second;
     figures.error = seen[i].error;
     figures.error_on_geometry = seen[i].error_on_geometry;
@@ -364,6 +435,7 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     const auto id = ids_.find(sets[i]);
     const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
     if (found == figures_.end()) continue;
+    if (!remembered[i]) memory_.keep(sets[i], {id->second, found->second});
     tried[i] = lod::Tried{sets[i], found->second.cost, found->second.error.delta_e};
   }
   return tried;
@@ -382,30 +454,31 @@ std::vector<LodMaterial::Parameter> LodMaterial::fittable(const lod::Words& word
     const bool unit = p.range.lo == 0 && p.range.hi == 1 && p.range.gap == 0;
     if (!unit || p.animated || p.type == ir::Type::Bool || p.type == ir::Type::Vec2) continue;
     const auto count = static_cast<size_t>(ir::componentCount(p.type));
+    const std::vector<double> whole(p.value.begin(), p.value.begin() + static_cast<ptrdiff_t>(count));
     // Alpha is coverage, which stays as it is.
     for (size_t c = 0; c < std::min<size_t>(count, 3); ++c) {
-      if (p.value[c] > 0 && all.size() < kMost) all.push_back({p.name, c, count, p.value[c]});
+      if (p.value[c] > 0 && all.size() < kMost) all.push_back({p.name, c, count, p.value[c], whole});
     }
   }
   return all;
 }
 
-std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const lod::Words& words,
-                                                                 const std::vector<Parameter>& parameters,
-                                                                 const std::vector<double>& scales,
-                                                                 bool triangles) const {
-  const auto change = [&](ir::Module& module) {
-    for (size_t i = 0; i < parameters.size(); ++i) {
-      for (ir::Parameter& p : module.parameters) {
-        if (p.name == parameters[i].name)
-          p.value[parameters[i].component] = std::min(parameters[i].value * scales[i], 1.0);
-      }
-    }
-  };
-  Messages ignored;
-  const Result<std::vector<preview::Shading>> made = shadings(words, ignored, change);
-  if (!made) return std::nullopt;
-  return shotsOf(*made, kFitSize, 2, triangles);
+/// Small pictures with some numbers times these.
+std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(
+    const std::vector<preview::Shading>& shadings, const std::vector<Parameter>& parameters,
+    const std::vector<double>& scales, bool triangles) const {
+  std::map<std::string, std::vector<double>> values;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    values.try_emplace(p.name, p.whole).first->second[p.component] = std::min(p.value * scales[i], 1.0);
+  }
+  std::vector<preview::Shading> made;
+  for (const preview::Shading& shading : shadings) {
+    Result<preview::Shading> one = shading.with(values);
+    if (!one) return std::nullopt;
+    made.push_back(std::move(*one));
+  }
+  return shotsOf(made, kFitted, kSearchedGrid, triangles);
 }
 
 namespace {
@@ -458,8 +531,15 @@ std::vector<double> LodMaterial::scalesOf(const lod::Words& words, const std::ve
   return scales;
 }
 
+std::optional<lod::Words> LodMaterial::fitted(const lod::Words& words) const {
+  if (std::optional<std::optional<lod::Words>> known = memory_.fitted(words)) return std::move(*known);
+  std::optional<lod::Words> made = fit(words);
+  memory_.keepFitted(words, made);
+  return made;
+}
+
 /// Levenberg and Marquardt's least squares over the pictures' colours, with differences for derivatives.
-std::optional<lod::Words> LodMaterial::fitted(const lod::Words& given) const {
+std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
   constexpr int kRounds = 4;
   constexpr double kStep = 0.02;
   constexpr double kLeast = 0.2;
@@ -471,11 +551,14 @@ std::optional<lod::Words> LodMaterial::fitted(const lod::Words& given) const {
   if (parameters.empty()) return std::nullopt;
   std::vector<double> scales = scalesOf(given, parameters);
   const bool triangles = atVertices(words);
+  Messages ignored;
+  const Result<std::vector<preview::Shading>> made = shadings(words, ignored);
+  if (!made) return std::nullopt;
   const auto labsWith = [&](const std::vector<double>& with) -> std::vector<double> {
-    const auto shots = shotsWith(words, parameters, with, triangles);
+    const auto shots = shotsWith(*made, parameters, with, triangles);
     return shots ? labsOf(*shots) : std::vector<double>();
   };
-  const std::vector<double> wanted = labsOf(small_[triangles]);
+  const std::vector<double> wanted = labsOf(fit_[triangles]);
   std::vector<double> now = labsWith(scales);
   if (now.size() != wanted.size()) return std::nullopt;
   double error = squares(now, wanted);

@@ -182,7 +182,93 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
   if (!fragment) return tl::make_unexpected(std::move(fragment.error()));
   shading.vertex_ = std::move(*vertex);
   shading.fragment_ = std::move(*fragment);
+  shading.noteNeeds();
   return shading;
+}
+
+Result<Shading> Shading::with(const std::map<std::string, std::vector<double>>& parameters) const {
+  Shading made = *this;
+  for (const auto& [name, value] : parameters) made.base_.columns[name] = eval::Column::constant(value);
+  if (Result<void> block = eval::bindMaterialBlock(look_->module, made.base_); !block)
+    return tl::make_unexpected(std::move(block.error()));
+  return made;
+}
+
+namespace {
+
+/// The columns of points that have members of their own for them.
+constexpr std::array<std::string_view, 14> kMembers = {
+    "POSITION",   "VIEW",    "NORMAL", "TANGENT",        "TEXCOORD_0", "TEXCOORD_1",      "TEXCOORD_2",
+    "TEXCOORD_3", "COLOR_0", "LIGHT",  "gl_FrontFacing", "INSIDE",     "SURROUNDING_IOR", "CHANNEL"};
+
+template <class PointAt>
+eval::Column columnOf(std::string_view name, size_t count, const PointAt& at) {
+  const auto of = [&](auto get) {
+    const size_t components = get(eval::Point()).size();
+    std::vector<double> values(count * components);
+    double* to = values.data();
+    for (size_t i = 0; i < count; ++i) {
+      for (const double x : get(at(i))) *to++ = x;
+    }
+    return eval::Column::perPoint(static_cast<int>(components), std::move(values));
+  };
+  using Point = eval::Point;
+  const auto one = [](double x) { return std::array<double, 1>{x}; };
+  if (name == "POSITION") return of([](const Point& p) { return p.position; });
+  if (name == "VIEW") return of([](const Point& p) { return p.v; });
+  if (name == "NORMAL") return of([](const Point& p) { return p.n; });
+  if (name == "TANGENT") return of([](const Point& p) { return p.t; });
+  if (name.starts_with("TEXCOORD_")) {
+    const auto set = static_cast<size_t>(name[9] - '0');
+    return of([set](const Point& p) { return p.uv[set]; });
+  }
+  if (name == "COLOR_0") return of([](const Point& p) { return p.color0; });
+  if (name == "LIGHT") return of([](const Point& p) { return p.l; });
+  if (name == "gl_FrontFacing") return of([&](const Point& p) { return one(p.front_facing ? 1 : 0); });
+  if (name == "INSIDE") return of([&](const Point& p) { return one(p.inside ? 1 : 0); });
+  if (name == "SURROUNDING_IOR") return of([&](const Point& p) { return one(p.surrounding_ior); });
+  if (name == "CHANNEL") return of([&](const Point& p) { return one(p.channel); });
+  return of([](const Point& p) { return p.random; });
+}
+
+}  // namespace
+
+/// Most programs read a few columns: the others need not be made.
+void Shading::noteNeeds() {
+  for (const auto& [name, column] : base_.columns) {
+    const auto read = [&](const eval::Program& program) {
+      return std::find(program.columns.begin(), program.columns.end(), name) != program.columns.end();
+    };
+    if (!column.per_point || !(read(vertex_) || read(fragment_))) continue;
+    if (name == "RANDOM" || std::find(kMembers.begin(), kMembers.end(), name) != kMembers.end())
+      needs_.push_back(name);
+    else if (name.ends_with(".camera_position"))
+      cameras_.push_back(name);
+  }
+}
+
+/// What points are to the programs: the base, with the columns that differ from point to point.
+template <class PointAt>
+eval::Bindings Shading::bound(size_t count, const PointAt& at) const {
+  eval::Bindings bindings = base_;
+  for (const std::string& name : needs_) bindings.columns[name] = columnOf(name, count, at);
+  for (const std::string& name : cameras_) {
+    const auto sum = [](const double* p, const double* v, double* out) {
+      for (size_t c = 0; c < 3; ++c) out[c] = p[c] + v[c];
+    };
+    bindings.columns[name] =
+        eval::combined(columnOf("POSITION", count, at), columnOf("VIEW", count, at), count, 3, sum);
+  }
+  return bindings;
+}
+
+eval::Bindings Shading::bound(std::span<const eval::Point> points) const {
+  const bool more =
+      std::any_of(points.begin(), points.end(), [](const eval::Point& p) { return !p.attributes.empty(); });
+  if (!more) return bound(points.size(), [&](size_t i) -> const eval::Point& { return points[i]; });
+  eval::Bindings bindings = base_;
+  bind(points, bindings);
+  return bindings;
 }
 
 void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings) const {
@@ -196,23 +282,21 @@ void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings
   eval::bindClock(look_->time, look_->frame, bindings);
 }
 
-/// The bindings of points of an object that stands somewhere, seen by one eye.
-eval::Bindings Shading::standing(std::span<const eval::Point> points, const Standing& standing) const {
-  eval::Bindings bindings = base_;
-  bind(points, bindings);
+/// Makes bindings those of points of an object that stands somewhere, seen by one eye.
+void Shading::stand(size_t points, const Standing& standing, eval::Bindings& bindings) const {
   const auto set = [&](const char* name, const double* values, size_t count) {
     const auto found = bindings.columns.find(name);
     if (found == bindings.columns.end()) return;
     eval::Column& column = found->second;
     column.values.assign(values, values + count);
     // As it was when the program was compiled: for each point, or for all.
-    for (size_t i = 1; column.per_point && i < points.size(); ++i)
+    if (column.per_point) column.values.reserve(points * count);
+    for (size_t i = 1; column.per_point && i < points; ++i)
       column.values.insert(column.values.end(), values, values + count);
   };
   set("object.model", standing.model.data(), 16);
   set("object.normal_matrix", standing.normal_matrix.data(), 16);
   set("frame.camera_position", standing.eye.data(), 3);
-  return bindings;
 }
 
 template <class T>
@@ -236,8 +320,7 @@ std::vector<Rgba> Shading::fragmentStage(const eval::Bindings& bindings, size_t 
 
 template <class T>
 std::vector<Rgba> Shading::run(std::span<const eval::Point> points) const {
-  eval::Bindings bindings = base_;
-  bind(points, bindings);
+  eval::Bindings bindings = bound(points);
   Vertices varyings = vertexStage<T>(bindings, points.size());
   for (size_t i = 0; i < varyings.size(); ++i) {
     bindings.columns[varyings_[i]->name] =
@@ -253,7 +336,8 @@ std::vector<Rgba> Shading::operator()(std::span<const eval::Point> points) const
 
 Shading::Vertices Shading::vertices(std::span<const eval::Point> points, const Standing& standing) const {
   if (points.empty() || varyings_.empty()) return Vertices(varyings_.size());
-  const eval::Bindings bindings = this->standing(points, standing);
+  eval::Bindings bindings = bound(points);
+  stand(points.size(), standing, bindings);
   return look_->in_float ? vertexStage<float>(bindings, points.size())
                          : vertexStage<double>(bindings, points.size());
 }
@@ -261,9 +345,11 @@ Shading::Vertices Shading::vertices(std::span<const eval::Point> points, const S
 std::vector<Rgba> Shading::samples(std::span<const Coverage::Sample> samples, const Vertices& vertices,
                                    const Standing& standing) const {
   if (samples.empty()) return {};
-  std::vector<eval::Point> points(samples.size());
-  for (size_t i = 0; i < samples.size(); ++i) points[i].front_facing = samples[i].front;
-  eval::Bindings bindings = this->standing(points, standing);
+  std::array<eval::Point, 2> any;  // from behind, from in front
+  any[0].front_facing = false;
+  eval::Bindings bindings =
+      bound(samples.size(), [&](size_t i) -> const eval::Point& { return any[samples[i].front ? 1 : 0]; });
+  stand(samples.size(), standing, bindings);
   for (size_t v = 0; v < varyings_.size(); ++v) {
     const auto width = static_cast<size_t>(ir::componentCount(varyings_[v]->type));
     std::vector<double> values(samples.size() * width, 0.0);
@@ -280,8 +366,8 @@ std::vector<Rgba> Shading::samples(std::span<const Coverage::Sample> samples, co
     }
     bindings.columns[varyings_[v]->name] = eval::Column::perPoint(static_cast<int>(width), std::move(values));
   }
-  return look_->in_float ? fragmentStage<float>(bindings, points.size())
-                         : fragmentStage<double>(bindings, points.size());
+  return look_->in_float ? fragmentStage<float>(bindings, samples.size())
+                         : fragmentStage<double>(bindings, samples.size());
 }
 
 Picture drawBall(const Shading& shading, uint32_t size, Color background) {

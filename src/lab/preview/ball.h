@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,9 @@ public:
   /// `studio` must outlive this. Errors: "unbound-input" and the like, for a template that is not known here.
   static Result<Shading> make(Look look, const Studio& studio);
 
+  /// The same material with other values of parameters, by name.
+  Result<Shading> with(const std::map<std::string, std::vector<double>>& parameters) const;
+
   /// RGBA of each point; alpha is 0 where the material drops the fragment. Thread-safe.
   std::vector<std::array<double, 4>> operator()(std::span<const eval::Point> points) const;
 
@@ -53,7 +57,11 @@ public:
 private:
   Shading() = default;
   void bind(std::span<const eval::Point> points, eval::Bindings& bindings) const;
-  eval::Bindings standing(std::span<const eval::Point> points, const Standing& standing) const;
+  void noteNeeds();
+  template <class PointAt>
+  eval::Bindings bound(size_t count, const PointAt& at) const;
+  eval::Bindings bound(std::span<const eval::Point> points) const;
+  void stand(size_t points, const Standing& standing, eval::Bindings& bindings) const;
   template <class T>
   Vertices vertexStage(const eval::Bindings& bindings, size_t points) const;
   template <class T>
@@ -65,6 +73,8 @@ private:
   eval::Bindings base_;  ///< textures and the material's block
   eval::Program vertex_, fragment_;
   std::vector<const ir::Varying*> varyings_;
+  std::vector<std::string> needs_;    ///< columns of points that the programs read
+  std::vector<std::string> cameras_;  ///< those that are made of two
 };
 
 /// How two balls differ, over all samples, of linear colours.

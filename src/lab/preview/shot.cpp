@@ -185,12 +185,12 @@ Shot shoot(const Shading& shading, const Coverage& coverage) {
   return shot;
 }
 
-SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b) {
+SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b, bool flip) {
   std::vector<double> delta_e, flips;
   for (size_t i = 0; i < a.size(); ++i) {
-    const std::vector<double> map = picture::flip(a[i].pixels, b[i].pixels);
+    const std::vector<double> map = flip ? picture::flip(a[i].pixels, b[i].pixels) : std::vector<double>();
     for (const uint32_t pixel : a[i].inside) {
-      flips.push_back(map[pixel]);
+      if (flip) flips.push_back(map[pixel]);
       delta_e.push_back(picture::deltaE2000(picture::labOf(a[i].pixels.colors[pixel]),
                                             picture::labOf(b[i].pixels.colors[pixel])));
     }

@@ -25,8 +25,9 @@ Shot shoot(const Shading& shading, const Coverage& coverage);
 /// Samples of a pixel along each side that measurements at that size take: small pictures have few pixels.
 inline uint32_t gridOf(uint32_t size) { return size < 48 ? 4 : 2; }
 
-/// How different pairs of equal size look, all of their pixels together.
-SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b);
+/// How different pairs of equal size look, all of their pixels together. `flip`: FLIP, too, which takes five
+/// times as long as the rest.
+SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b, bool flip = true);
 
 /// The shot before `background`, as sRGB; and where and how much two differ, by FLIP, from black to yellow.
 Picture shown(const Shot& shot);

@@ -73,20 +73,15 @@ constexpr double kSpread = 0.85;
 
 /// A step from 0 to 1 at 0 that a normal distribution of that deviation has blurred.
 double edge(double x, double deviation) {
-  return 0.5 + 0.5 * std::erf(x / (deviation * std::numbers::sqrt2));
+  constexpr double kWhole = 6;  // from here on the error function is 1 in double precision
+  const double t = x / (deviation * std::numbers::sqrt2);
+  if (std::abs(t) >= kWhole) return t > 0 ? 1 : 0;
+  return 0.5 + 0.5 * std::erf(t);
 }
 
-/// How much of a box is seen: the exact blur of a rectangle in the plane that it lies in.
-double seen(const Softbox& box, const Vec3& direction, double deviation) {
-  const Vec3 middle = unit(box.to);
-  const Vec3 across = unit(cross({0, 1, 0}, middle));
-  const Vec3 up = cross(middle, across);
-  const double depth = dot(direction, middle);
-  if (depth <= 0) return 0;
-  const double x = dot(direction, across) / depth;
-  const double y = dot(direction, up) / depth;
-  return (edge(x + box.width, deviation) - edge(x - box.width, deviation)) *
-         (edge(y + box.height, deviation) - edge(y - box.height, deviation));
+/// A strip from -half to half, blurred.
+double strip(double x, double half, double deviation) {
+  return edge(x + half, deviation) - edge(x - half, deviation);
 }
 
 /// The real spherical harmonics up to the second order.
@@ -128,8 +123,14 @@ Vec3 Studio::radiance(const Vec3& direction, double roughness) const {
     const double sky = around_.horizon[i] + (around_.zenith[i] - around_.horizon[i]) * height;
     result[i] = around_.ground[i] + (sky - around_.ground[i]) * above;
   }
-  for (const Softbox& box : around_.boxes) {
-    const double part = seen(box, direction, deviation);
+  for (size_t b = 0; b < frames_.size(); ++b) {
+    // The exact blur of a rectangle in the plane that it lies in.
+    const Softbox& box = around_.boxes[b];
+    const double depth = dot(direction, frames_[b].middle);
+    if (depth <= 0) continue;
+    const double wide = strip(dot(direction, frames_[b].across) / depth, box.width, deviation);
+    if (wide == 0) continue;
+    const double part = wide * strip(dot(direction, frames_[b].up) / depth, box.height, deviation);
     for (size_t i = 0; i < 3; ++i) result[i] += part * box.radiance[i];
   }
   return result;
@@ -140,6 +141,11 @@ Studio::Studio() : Studio(sheetStudio()) {}
 Studio::Studio(Surroundings around, double turn) : around_(std::move(around)) {
   for (Softbox& box : around_.boxes) box.to = turned(box.to, turn);
   for (Lamp& lamp : around_.lamps) lamp.to = turned(lamp.to, turn);
+  for (const Softbox& box : around_.boxes) {
+    const Vec3 middle = unit(box.to);
+    const Vec3 across = unit(cross({0, 1, 0}, middle));
+    frames_.push_back({middle, across, cross(middle, across)});
+  }
   // The convolution with the cosine over pi, by order.
   constexpr double kCosine[] = {1.0, 2.0 / 3.0, 0.25};
   constexpr size_t kOrder[] = {0, 1, 1, 1, 2, 2, 2, 2, 2};

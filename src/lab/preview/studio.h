@@ -64,7 +64,13 @@ public:
   static constexpr uint32_t kLights = 2;
 
 private:
+  /// A box's directions: to its middle, across and up.
+  struct Frame {
+    Vec3 middle, across, up;
+  };
+
   Surroundings around_;
+  std::vector<Frame> frames_;  ///< of the boxes
   std::array<Vec3, 9> harmonics_{};
   std::shared_ptr<const environment::Maps> maps_;  ///< in place of `around_` and `harmonics_`
 };
