@@ -92,9 +92,10 @@ Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size,
     const double cost = cycles + kVertexShare * more;
     const bool cheaper = one.words.empty() || cost < least;
     if (cheaper) least = cost;
-    if (cheaper && !one.words.empty())
-      moved.push_back({one.words, subject.figures(one.words).error, cycles, more, cost,
-                       shaderId(*module, given.language)});
+    if (!cheaper || one.words.empty()) continue;
+    const Result<LevelFigures> seen = subject.seen(one.words, true);
+    if (!seen) return tl::make_unexpected(seen.error());
+    moved.push_back({one.words, seen->error, cycles, more, cost, shaderId(*module, given.language)});
   }
   return moved;
 }
