@@ -3,13 +3,17 @@ import type { Options } from '../src/index';
 import { byId, h } from './dom';
 
 /** By the names that `Options` has of them: what a control says of each value. */
-const kChoices: { key: 'parameters' | 'lights' | 'binding'; name: string; title: string; values: Record<string, string> }[] = [
+const kChoices: { key: 'parameters' | 'lights' | 'binding' | 'relaxed'; name: string; title: string; values: Record<string, string> }[] = [
   {
     key: 'parameters', name: 'Numbers', title: '--params: where the material\'s numbers are',
     values: { uniform: 'in a block', baked: 'in the text', spec: 'specialization constants' },
   },
   { key: 'lights', name: 'Lamps', title: '--lights', values: { any: 'any number', scene: 'those of the file', none: 'none' } },
   { key: 'binding', name: 'Binding', title: '--binding', values: { sets: 'sets', bindless: 'bindless', arrays: 'arrays' } },
+  {
+    key: 'relaxed', name: 'Half precision', title: '--relaxed: the part of a colour that half precision may change',
+    values: { 0.002: '0.2 %', 0.01: '1 %', 0.02: '2 %' },
+  },
 ];
 /** What draws nothing of a material by itself. */
 const kBases = ['mesh', 'sky'];
@@ -51,7 +55,8 @@ export class Generated {
   options(drawn: Options): Options {
     const made: Options = { ...drawn };
     for (const [key, { value }] of this.selects) {
-      if (value !== '') Object.assign(made, { [key]: key === 'lights' && value === 'none' ? {} : value });
+      if (value === '') continue;
+      Object.assign(made, { [key]: key === 'relaxed' ? Number(value) : key === 'lights' && value === 'none' ? {} : value });
     }
     const set = [...this.switches].flatMap(([name, { value }]) => (value === '' ? [] : [[name, value === 'on'] as const]));
     if (set.length > 0) made.switches = { ...drawn.switches, ...Object.fromEntries(set) };

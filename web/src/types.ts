@@ -53,6 +53,10 @@ export interface Options {
   dfg_table?: boolean;
   decode_srgb?: boolean;
   permissive?: boolean;
+  /** The part of a colour that half precision may change, 0 (none) to 0.5 (docs/intervals.md). */
+  relaxed?: number;
+  /** Of what `relaxed` allows, what is cheaper with types of 16 bits has them. */
+  half?: boolean;
   debug?: boolean;
   live?: string[];
   /** More node files: their texts by the names that messages have of them. */

@@ -43,6 +43,7 @@ test('the text is made with the options of `lacquer gen` that are chosen; the pi
     };
     const cases = [
       ['baked', ['--params', 'baked', '--lights', 'none'], { 'gen-parameters': 'baked', 'gen-lights': 'none' }],
+      ['halves', ['--params', 'baked', '--relaxed', '0.02'], { 'gen-parameters': 'baked', 'gen-relaxed': '0.02' }],
       ['surface', ['--template', 'surface'], { 'gen-template': 'surface' }],
       ['switched', ['--switch', 'ibl=off', '--switch', 'dfg_table=off'], { 'switch-ibl': 'off', 'switch-dfg_table': 'off' }],
     ];
