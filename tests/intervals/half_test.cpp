@@ -96,7 +96,11 @@ void expectValid(const ir::Module& module, const std::string& name) {
     } else {
       EXPECT_TRUE(has(text, type) || has(text, "f16vec")) << name << " " << targetName(target);
     }
-    if (target == Target::Wgsl) continue;  // glslang has none
+    if (target == Target::Wgsl) {  // glslang has none
+      if (!check::haveTint()) continue;
+      for (const Diagnostic& wrong : check::compileWithTint(text, name)) ADD_FAILURE() << wrong.message;
+      continue;
+    }
     const Result<check::Spirv> compiled = check::compile(text, target, check::Stage::Fragment, name);
     EXPECT_TRUE(compiled) << text << (compiled ? "" : compiled.error()[0].message);
     if (compiled && target == Target::Glsl) {
