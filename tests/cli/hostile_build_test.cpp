@@ -267,6 +267,7 @@ std::map<const void*, Words> wordsOf(const Options& options) {
           {&options.validate, {"--no-validate"}},
           {&options.spirv_route, {"--spirv-from", "glslang"}},
           {&options.relaxed, {"--relaxed", "0.0123"}},
+          {&options.half, {"--relaxed", "0.0123", "--half"}},
           {&options.optimize, {"--optimize", "1"}},
           {&options.optimize_error, {"--optimize", "2", "--error", "0.001"}},
           {&options.optimize_for, {"--optimize-for", optimizeFamilies().back()}},

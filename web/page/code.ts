@@ -1,5 +1,6 @@
 // Generated text with its words coloured, in the sections that its comments begin: one for each term.
 import { zipSync, type Zippable } from 'fflate';
+import { LacquerError } from '../src/index';
 import { byId, download, h } from './dom';
 import type { Page } from './main';
 
@@ -71,10 +72,22 @@ type Stage = 'vertex' | 'fragment';
 const endingOf = (target: string, stage: Stage): string =>
   kWhole[target] ?? `${stage === 'fragment' ? 'frag' : 'vert'}.${kEndings[target] ?? 'txt'}`;
 
-/** All targets' texts in the folders of `lacquer gen`, what is bound to them, and the graph; null where the material has an error. */
-function folderOf(page: Page, { id, interface: about, graph, block }: ReturnType<Page['described']>): Uint8Array<ArrayBuffer> | null {
+/** Those that take the options: ESSL, say, has no arrays without an end. */
+function targetsOf(page: Page): string[] {
+  return [...byId<HTMLSelectElement>('target').options].map(({ value }) => value).filter((target) => {
+    try {
+      return page.described(target).id !== '';
+    } catch (error) {
+      if (!(error instanceof LacquerError)) throw error;
+      return false;
+    }
+  });
+}
+
+/** Targets' texts in the folders of `lacquer gen`, what is bound to them, and the graph; null where the material has an error. */
+function folderOf(page: Page, targets: string[], { id, interface: about, graph, block }: ReturnType<Page['described']>): Uint8Array<ArrayBuffer> | null {
   const files: Zippable = {};
-  for (const { value: target } of byId<HTMLSelectElement>('target').options) {
+  for (const target of targets) {
     for (const stage of ['vertex', 'fragment'] as const) {
       const bytes = page.bytes(target, stage);
       if (!bytes) return null;
@@ -102,12 +115,16 @@ export function connectCode(page: Page): void {
   byId('download-code').addEventListener('click', () => {
     const { target, stage } = chosen();
     const bytes = page.bytes(target, stage);
-    if (bytes) download(`${page.described().id}.${endingOf(target, stage)}`, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
+    if (bytes) download(`${page.described(target).id}.${endingOf(target, stage)}`, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
   });
   byId('download-folder').addEventListener('click', () => {
-    const about = page.describedOrSaid();
-    const bytes = about && folderOf(page, about);
-    if (bytes) download(`${about.id}.zip`, bytes, 'application/zip');
+    const targets = targetsOf(page);
+    const about = targets.length > 0 ? page.described(targets[0]) : page.describedOrSaid();
+    const bytes = about && folderOf(page, targets, about);
+    if (!bytes) return;
+    download(`${about.id}.zip`, bytes, 'application/zip');
+    const without = [...byId<HTMLSelectElement>('target').options].filter(({ value }) => !targets.includes(value));
+    if (without.length > 0) say(`without ${without.map(({ value }) => value).join(', ')}, which cannot have it so`);
   });
 }
 

@@ -408,8 +408,8 @@ export class Page {
   }
 
   /** What an application needs beside the texts: the manifest's entry, the graph, the bytes of the material's block. */
-  described(): { id: string; interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
-    return withShader(this.lacquer, this.of!, this.textOptions('essl'), [], (shader, graph) => ({
+  described(target: string): { id: string; interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
+    return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader, graph) => ({
       id: shader.id,
       interface: shader.interface,
       graph: graph.toText(),
@@ -420,7 +420,7 @@ export class Page {
   /** The same; null, and a message, where the material has an error. */
   describedOrSaid(): ReturnType<Page['described']> | null {
     try {
-      return this.described();
+      return this.described(byId<HTMLSelectElement>('target').value);
     } catch (error) {
       this.fail(error);
       return null;

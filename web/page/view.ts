@@ -57,6 +57,7 @@ export function lensOf(type: unknown, of: Record<string, unknown>): Lens | strin
     return { kind: type, yfov, znear, zfar, ...(above(aspectRatio, 0) && isNear(aspectRatio) && { aspectRatio }) };
   }
   const [xmag, ymag] = [of.xmag, of.ymag];
+  if (!isNear(zfar)) return 'zfar has no number';
   if (!isNear(xmag) || !isNear(ymag) || xmag === 0 || ymag === 0) return `xmag and ymag are ${JSON.stringify([xmag, ymag])}, and must not be 0`;
   return { kind: type, xmag: Math.abs(xmag), ymag: Math.abs(ymag), znear, zfar };
 }
@@ -91,13 +92,14 @@ export function seenBy(lens: Lens, world: Mat4): View {
   };
 }
 
-/** The orbit that goes on where a view is: it looks the same way, at what is as far as the middle was. */
+/** The orbit that goes on where a view is: it looks the same way, at what is as far as the middle was; from nearer, where that is
+ * further than an orbit goes. */
 export function orbitFrom({ eye, view }: View, middle: Vec3, radius: number): { orbit: Orbit; middle: Vec3 } {
   const back: Vec3 = [view[2], view[6], view[10]];
-  const away = Math.min(Math.max(dot(sub(eye, middle), back) / radius, 1.2), 20);
+  const depth = Math.max(dot(sub(eye, middle), back), 1.2 * radius);
   return {
-    orbit: { yaw: Math.atan2(back[0], back[2]), pitch: Math.min(Math.max(Math.asin(Math.min(Math.max(back[1], -1), 1)), -1.5), 1.5), distance: away },
-    middle: sub(eye, scale(back, away * radius)),
+    orbit: { yaw: Math.atan2(back[0], back[2]), pitch: Math.min(Math.max(Math.asin(Math.min(Math.max(back[1], -1), 1)), -1.5), 1.5), distance: Math.min(depth / radius, 20) },
+    middle: sub(eye, scale(back, depth)),
   };
 }
 

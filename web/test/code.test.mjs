@@ -62,6 +62,16 @@ test('the text is made with the options of `lacquer gen` that are chosen; the pi
     // What cannot be together is said in the place of the text.
     await page.selectOption('#gen-binding', 'bindless');
     assert.match(await page.textContent('#code'), /bindless/);
+    // What has them is saved all the same, alone and in the folder.
+    await page.selectOption('#target', 'hlsl');
+    const out = join(folder, 'bindless');
+    lacquer('gen', 'examples/clearcoat.gltf', '-o', out, '-q', '--no-validate', '--target', 'hlsl', '--binding', 'bindless');
+    const [file, text] = await saved();
+    assert.equal(text, readFileSync(join(out, 'hlsl', file), 'utf8'));
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download-folder')]);
+    const files = Object.keys(unzipSync(readFileSync(await download.path())));
+    assert.ok(files.includes(`hlsl/${file}`) && !files.some((name) => name.startsWith('essl/')), files.join());
+    assert.match(await page.textContent('#code-told'), /^without essl/);
   }));
 
 test('all targets are saved as a folder, as `lacquer gen` writes it', () =>

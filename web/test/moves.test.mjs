@@ -397,6 +397,12 @@ test('the picture is seen by a camera of the file, which moves, until a hand tur
   });
   assert.deepEqual([orbit.yaw, orbit.pitch], [0, 0]);
   assert.ok(Math.abs(orbit.distance * radius - 0.9 * (6 - between[2])) < 1e-3, JSON.stringify([orbit, between, radius]));
+  // The eye of a parallel projection is far away: a hand turns what is shown all the same.
+  await page.selectOption('#camera', { label: 'flat' });
+  await page.focus('#viewport');
+  await page.keyboard.press('+');
+  const from = await page.evaluate(() => ({ far: window.lacquerPage.viewport.orbit.distance, middle: window.lacquerPage.viewport.middle }));
+  assert.ok(from.far <= 20 && Math.abs(from.middle[2] - between[2]) < 1e-2, JSON.stringify([from, between]));
   await page.keyboard.press('f');
   await painted(page);
   // The ball is no part of the file.

@@ -355,13 +355,16 @@ void Scratch::note(std::string_view text) {
   std::string name = temporaryName();
   note_ = createLocked(path_, name, Links::Refuse);
   if (note_ == nullptr) return;
-  std::fwrite(kNote.data(), 1, kNote.size(), note_);
-  std::fwrite(text.data(), 1, text.size(), note_);
-  const std::vector<std::string> theirs = std::exchange(noted_, {std::move(name)});
-  if (std::fflush(note_) == 0) remove(theirs);
+  const bool whole = std::fwrite(kNote.data(), 1, kNote.size(), note_) == kNote.size() &&
+                     std::fwrite(text.data(), 1, text.size(), note_) == text.size() &&
+                     std::fflush(note_) == 0;
+  // Earlier ones stay where this one does not say all that they say.
+  if (whole) remove(std::exchange(noted_, {}));
+  noted_.push_back(std::move(name));
 }
 
 void Scratch::forget() {
+  if (note_ != nullptr) std::fclose(std::exchange(note_, nullptr));  // some systems remove no open file
   remove(std::exchange(noted_, {}));
   notes_.clear();
 }

@@ -86,6 +86,7 @@ std::vector<cost::Outcome> measureSubjects(const std::vector<cost::Subject>& sub
 static Options withoutSearch(Options options) {
   options.optimize = 0;
   options.optimize_error = 0;
+  options.half = false;
   return options;
 }
 

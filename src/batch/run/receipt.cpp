@@ -87,7 +87,7 @@ std::string compilersOf(const Options& options) {
 
 /// What decides which structures share a program, and which form of a shader is taken, is a driver's word.
 bool asksDriver(const Options& options) {
-  return (options.programs > 0 || !options.programs_report.empty() || options.optimize > 0) &&
+  return (options.programs > 0 || !options.programs_report.empty() || options.optimize > 0 || options.half) &&
          !options.programs_model;
 }
 

@@ -72,10 +72,15 @@ public:
       chosen = std::move(fewer);
       return true;
     };
-    // What one operation's leaving makes worthless goes in the next round.
-    for (bool changed = true; changed;) {
+    // What one operation's leaving makes worthless goes in the next round. Each is tried against the whole
+    // shader: of many, those that hang together go together alone.
+    constexpr size_t kMostSingly = 1000;
+    constexpr int kRounds = 8;
+    bool changed = true;
+    for (int round = 0; changed && round < kRounds; ++round) {
       changed = false;
-      for (const ValueId id : std::vector<ValueId>(chosen)) {
+      for (const ValueId id :
+           chosen.size() <= kMostSingly ? std::vector<ValueId>(chosen) : std::vector<ValueId>()) {
         std::vector<ValueId> fewer;
         std::remove_copy(chosen.begin(), chosen.end(), std::back_inserter(fewer), id);
         changed |= attempt(std::move(fewer));

@@ -201,6 +201,7 @@ std::optional<Tuned> tunedGraph(const Impl& impl, const Options& options, Messag
   Options plain = options;
   plain.optimize = 0;
   plain.optimize_error = 0;
+  plain.half = false;
   const auto ready = impl.prepared(plain, checkOptions);
   if (!ready) {
     report(ready.error(), impl.file, messages);

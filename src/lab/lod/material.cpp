@@ -250,7 +250,7 @@ Key LodMaterial::keyOf(const EvalMaterial& evaluated) const {
   addOptions(given_.options, {Decides::Graph, Decides::Module}, key);
   for (const std::string& texel : given_.texels) key.text(texel);
   key.number(size_).number(radius_);
-  const bool by_driver = cost::unavailable().empty();
+  const bool by_driver = !given_.options.programs_model && cost::unavailable().empty();
   key.number(by_driver).text(by_driver ? cost::driverIdentity() : std::string());
   for (const auto& [name, texture] : evaluated.textures()) {
     key.text(name).number(texture.constant.has_value());

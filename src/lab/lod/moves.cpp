@@ -1,6 +1,7 @@
 #include "lod/moves.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "optimize/cost.h"
 #include "setting/options.h"

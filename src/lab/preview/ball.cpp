@@ -235,11 +235,12 @@ eval::Column columnOf(std::string_view name, size_t count, const PointAt& at) {
 
 /// Most programs read a few columns: the others need not be made.
 void Shading::noteNeeds() {
-  for (const auto& [name, column] : base_.columns) {
+  for (const auto& entry : base_.columns) {
+    const std::string& name = entry.first;
     const auto read = [&](const eval::Program& program) {
       return std::find(program.columns.begin(), program.columns.end(), name) != program.columns.end();
     };
-    if (!column.per_point || !(read(vertex_) || read(fragment_))) continue;
+    if (!entry.second.per_point || !(read(vertex_) || read(fragment_))) continue;
     if (name == "RANDOM" || std::find(kMembers.begin(), kMembers.end(), name) != kMembers.end())
       needs_.push_back(name);
     else if (name.ends_with(".camera_position"))
