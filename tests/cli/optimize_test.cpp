@@ -58,6 +58,19 @@ TEST(Optimize, ARunIsRepeatedToTheByteAndKept) {
   }
 }
 
+TEST(Optimize, BoundsGrowByLessThanTwoWhereNodesAreAtTheVertices) {
+  const Workplace place;
+  const Outcome made =
+      place.run({"gen", (sourceFolder() / "bench/works/c.gltf").string(), "-o", "o", "-q", "--target", "glsl",
+                 "--no-validate", "--lights", "directional:1", "--optimize", "1", "--model-costs",
+                 "--simplify", "vertex:base.indirect", "--simplify", "vertex:film.fresnel"},
+                kLong);
+  ASSERT_EQ(made.status, 0) << made.all();
+  const json shaders = place.manifest("o")["shaders"];
+  ASSERT_FALSE(shaders.empty());
+  for (const json& shader : shaders) EXPECT_LT(shader["optimized"]["error_growth"], 2);
+}
+
 TEST(Optimize, IsOffByItselfAndSaysWhatDoesNotGoTogether) {
   const Workplace place;
   place.write("a.gltf", gltfOf({R"({"alphaMode": "MASK"})"}));

@@ -102,7 +102,7 @@ public:
         from = step.last;
         idle = step.best_cost < before - kCheaper ? 0 : idle + 1;
         before = std::min(before, step.best_cost);
-        if (!(step.best_cost < best - kCheaper)) continue;
+        if (!(step.best_cost < best - kCheaper) || !(step.growth < kGrowth)) continue;
         ir::Module made = module_;
         replaceFragment(made, step.best.plan, constants_);
         // Nothing of a loop's body may stand for what is the same outside of it.

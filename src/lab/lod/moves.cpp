@@ -96,6 +96,8 @@ Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size,
     if (!cheaper || one.words.empty()) continue;
     const Result<LevelFigures> seen = subject.seen(one.words, true);
     if (!seen) return tl::make_unexpected(seen.error());
+    // Smaller pictures may have told two apart the other way: what costs more and looks worse is none.
+    while (!moved.empty() && moved.back().error.delta_e >= seen->error.delta_e) moved.pop_back();
     moved.push_back({one.words, seen->error, cycles, more, cost, shaderId(*module, given.language)});
   }
   return moved;
