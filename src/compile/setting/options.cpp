@@ -146,7 +146,7 @@ Diagnostics checkReading(const Options& options) {
   }
   if (options.half && options.relaxed == 0) {
     add(wrong, "no-half", "types of 16 bits are asked for, and nothing is relaxed",
-        "allow an error by `relaxed`, such as 0.01, or leave `half` out");
+        "allow an error by `relaxed` (--relaxed), such as 0.01, or leave `half` out");
   }
   if (options.optimize > 0 && optimize::families().empty()) {
     add(wrong, "no-search", "this build of Lacquer does not search for cheaper forms",

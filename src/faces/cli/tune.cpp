@@ -45,7 +45,8 @@ void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
 namespace {
 
 void printTable(const Tuned& tuned) {
-  fmt::print("{}: {} cycles on {} as it is\n\n", printable(tuned.name), tuned.plain, tuned.family);
+  fmt::print("{}: {} cycles on {} as it is, by the model\n\n", printable(tuned.name), tuned.plain,
+             tuned.family);
   fmt::print("{:>10} {:>8} {:>7} {:>15} {:>8}\n", "error", "cycles", "saved", "approximations", "rounding");
   const auto saved = [&](double cycles) { return tuned.plain > 0 ? 100 * (1 - cycles / tuned.plain) : 0; };
   for (const TunedForm& form : tuned.forms) {

@@ -124,8 +124,9 @@ std::string pictureOf(const Tuned& tuned) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       kWidth, moves.empty() ? kHeight : 2 * kHeight);
-  svg += fmt::format("<text x=\"{}\" y=\"22\" font-size=\"14\">{}: {:.0f} cycles on {} as it is</text>\n",
-                     kLeft, escaped(tuned.name), tuned.plain, escaped(tuned.family));
+  svg += fmt::format(
+      "<text x=\"{}\" y=\"22\" font-size=\"14\">{}: {:.0f} cycles on {} as it is, by the model</text>\n",
+      kLeft, escaped(tuned.name), tuned.plain, escaped(tuned.family));
   svg += frontOf(forms, tuned.plain, "error, proved");
   if (!moves.empty()) {
     svg += fmt::format("<g transform=\"translate(0 {})\">\n", kHeight);
