@@ -62,7 +62,10 @@ bool compiledByDxc(const std::string& profile, const std::string& file, const st
   static const auto create = functionOf<Create>("dxcompiler.dll", "DxcCreateInstance");
   static DxcCompiler* const compiler = [] {
     DxcCompiler* made = nullptr;
-    create(kCompiler, kCompiler3, reinterpret_cast<void**>(&made));
+    if (FAILED(create(kCompiler, kCompiler3, reinterpret_cast<void**>(&made)))) {
+      std::cerr << "dxcompiler.dll makes no compiler\n";
+      ExitProcess(2);
+    }
     return made;
   }();
   const std::wstring name(file.begin(), file.end()), model(profile.begin(), profile.end());

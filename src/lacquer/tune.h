@@ -38,7 +38,7 @@ struct Tuned {
   double plain = 0;    ///< cycles of the form as it is
   /// Each cheaper than the one before it, and off by more; the first is equal in real numbers.
   std::vector<TunedForm> forms;
-  /// Each costs less than the one before it, looks worse, and has all that is equal and cheaper.
+  /// The cheapest last, each further off than the one before it; each in its cheapest equal form.
   std::vector<TunedMove> moves;
 };
 

@@ -33,7 +33,7 @@ namespace {
 
 constexpr size_t kBlock = size_t{1} << 18;
 constexpr std::string_view kScratch = "/.lacquer-tmp";
-/// What a note begins with. Nothing else that is half written there does.
+/// The first line of a note, which no other unfinished file of the folder has.
 constexpr std::string_view kNote = "lacquer: what a run may leave behind\n";
 
 /// The last part of a name that no other process or thread takes at the same time.

@@ -59,7 +59,7 @@ public:
   /// Where it is below a folder.
   static std::string below(const std::string& folder);
 
-  /// What runs have noted that did not come to forget().
+  /// The notes of earlier runs that were killed before forget().
   const std::vector<std::string>& notes() const { return notes_; }
   /// Leaves this to the next Scratch in place of notes(). A note that cannot be written is none.
   void note(std::string_view text);

@@ -23,7 +23,7 @@ static void dropFiles(std::string& text) {
   if (text.starts_with(kFirst) && files < at && at != std::string::npos) text.erase(files, at - files);
 }
 
-/// What a shader of this name may have of a target's files.
+/// Adds the paths of all files that a target writes for the shader `id`.
 static void addPaths(Target target, const std::string& id, std::vector<std::string>& paths) {
   for (int stage = firstStage(target, true); stage < 2; ++stage)
     paths.push_back(shaderPath(target, id, stage));
@@ -93,7 +93,7 @@ void LeftShaders::expect(const std::vector<std::string>& paths) {
     std::error_code ignored;
     return !needed.contains(path) && std::filesystem::exists(folder_ + "/" + path, ignored);
   };
-  // What the list names before and after is left by nobody.
+  // A run that is killed leaves no file behind where the lists before and after it name the same ones.
   if (scratch_.notes().empty() && std::includes(all.begin(), all.end(), needed.begin(), needed.end()) &&
       std::none_of(all.begin(), all.end(), goes)) {
     return;

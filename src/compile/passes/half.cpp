@@ -16,7 +16,7 @@ using ir::ValueId;
 
 int widthOf(const ir::Value& value) { return ir::componentCount(value.type); }
 
-/// What is done with two numbers of 16 bits at once.
+/// Whether GPUs with packed arithmetic do the operation on two numbers of 16 bits at once.
 bool packs(Op op) {
   return op == Op::Add || op == Op::Sub || op == Op::Mul || op == Op::Min || op == Op::Max;
 }
@@ -72,8 +72,8 @@ public:
       chosen = std::move(fewer);
       return true;
     };
-    // What one operation's leaving makes worthless goes in the next round. Each is tried against the whole
-    // shader: of many, those that hang together go together alone.
+    // An operation that pays only beside one that left is found in the next round. Each attempt walks the
+    // whole shader: in large ones whole clusters are tried, no single operations.
     constexpr size_t kMostSingly = 1000;
     constexpr int kRounds = 8;
     bool changed = true;
@@ -95,7 +95,7 @@ public:
     return chosen;
   }
 
-  /// What is connected through operands, and through what moves.
+  /// The chosen operations in groups that operands connect, also through swizzles and other moves.
   std::vector<std::vector<ValueId>> clusters(const std::vector<ValueId>& chosen) {
     spread(chosen);
     std::vector<ValueId> first(dag_.size());
@@ -121,7 +121,7 @@ public:
   }
 
 private:
-  /// A move is of 16 bits where all is that it moves, and where it may be.
+  /// A move has 16 bits where it is relaxed and all of its operands have 16 bits or are constants.
   void spread(const std::vector<ValueId>& chosen) {
     half_.assign(dag_.size(), false);
     for (const ValueId id : chosen) half_[id] = true;

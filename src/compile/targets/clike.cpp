@@ -114,7 +114,7 @@ private:
 
 Expression Printer::in(ValueId id, bool half) const {
   const Type type = dag_[id].type;
-  if (!ir::isFloating(type) || this->half(id) == half) return own(id);
+  if (!halves_ || !ir::isFloating(type) || this->half(id) == half) return own(id);
   const std::string_view to = half ? dialect_.halfType(type) : dialect_.type(type);
   const bool number = half && type != Type::Float && dag_.isConstant(id);
   if (!number) return {fmt::format("{}({})", to, own(id).text)};

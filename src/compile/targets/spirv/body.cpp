@@ -33,9 +33,9 @@ constexpr std::array<uint32_t, ir::kOpCount> kOpcodes = opcodes();
 /// What lone_component_ says of a value that is needed whole; below it, 1 + the component.
 constexpr uint8_t kWhole = 0xff;
 
-/// What splats_ has of a value: as vectors of 2, 3 and 4 components of 32 bits, of 16 bits, and itself
-/// converted to the other of the two.
-constexpr size_t kForms = 7, kHalfSplats = 3, kConverted = 6;
+/// The ids in splats_ of a value: those of its vectors of 2, 3 and 4 components; where there are types of 16
+/// bits, also those of its vectors of 16 bits, and that of the value converted to the other width.
+constexpr size_t kSplats = 3, kHalfSplats = 3, kConverted = 6, kHalfForms = 7;
 
 }  // namespace
 
@@ -49,10 +49,11 @@ Body::Body(const ir::Module& module, const schedule::Program& program, const Int
       debug_(options.debug),
       relaxed_(options.relaxed),
       half_(module.half && module.half->used),
+      forms_(half_ ? kHalfForms : kSplats),
       live_(program.live),
       loops_(dag_, live_),
       ids_(dag_.size(), 0),
-      splats_(dag_.size() * kForms, 0),
+      splats_(dag_.size() * forms_, 0),
       lone_component_(dag_.size(), 0) {
   constexpr size_t kWordsPerValue = 6;
   code_.reserve(live_.size() * kWordsPerValue + 64);
@@ -136,10 +137,10 @@ uint32_t Body::write() {
 
 /// A value with 16 bits or with 32, whatever it was computed with.
 uint32_t Body::in(ValueId id, bool half) {
-  if (!ir::isFloating(dag_[id].type) || this->half(id) == half) return own(id);
+  if (!half_ || !ir::isFloating(dag_[id].type) || this->half(id) == half) return own(id);
   const Type type = dag_[id].type;
   if (half && dag_.isConstant(id)) return globals_.half(type, dag_.constantOf(id).data());
-  const size_t slot = id * kForms + kConverted;
+  const size_t slot = id * forms_ + kConverted;
   if (splats_[slot] != 0) return splats_[slot];
   const uint32_t from = own(id);
   const uint32_t to = globals_.type(half ? halfKindOf(type) : kindOf(type));
@@ -242,7 +243,7 @@ uint32_t Body::splat(ValueId scalar, Type like, bool half) {
   const auto width = static_cast<size_t>(ir::componentCount(like));
   const bool condition = dag_[scalar].type == Type::Bool;
   half = half && !condition;
-  const size_t slot = scalar * kForms + (half ? kHalfSplats : 0) + width - 2;
+  const size_t slot = scalar * forms_ + (half ? kHalfSplats : 0) + width - 2;
   if (splats_[slot] != 0) return splats_[slot];
   const uint32_t component = in(scalar, half);
   const uint32_t type = globals_.type(condition ? boolKind(like) : half ? halfKindOf(like) : kindOf(like));

@@ -100,7 +100,8 @@ private:
   Globals& globals_;
   const bool debug_;
   const bool relaxed_;  ///< what the Dag says is relaxed counts
-  const bool half_;     ///< and has types of 16 bits
+  const bool half_;     ///< relaxed operations have types of 16 bits
+  const size_t forms_;  ///< of a value in splats_
   Words code_;
 
   const std::vector<ir::ValueId>& live_;
@@ -108,7 +109,7 @@ private:
   std::vector<uint8_t> product_in_;      ///< by value: of a sum, 1 + the operand that it multiplies itself
   std::vector<uint8_t> fused_;           ///< by value: a product that is part of the one sum that reads it
   std::vector<uint32_t> ids_;            ///< by value: its id, 0 while it has none here
-  std::vector<uint32_t> splats_;         ///< kForms a value: its splats and what it is converted to
+  std::vector<uint32_t> splats_;         ///< forms_ ids a value: of its splats and its conversion
   std::vector<uint8_t> lone_component_;  ///< by value, see findLoneComponents
   std::vector<Loop> open_;               ///< the loops around what is written, the outermost first
   uint32_t block_ = 0;                   ///< the label of the block being written
