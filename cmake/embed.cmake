@@ -32,3 +32,22 @@ function(lacquer_embed_files target folders name names)
     VERBATIM)
   target_sources(${target} PRIVATE "${output}")
 endfunction()
+
+# lacquer_prepare(TARGET LINKS...): puts what material/prepare/ makes of the library's own texts into a library, so that no program
+# makes it again at each start. The program for it runs on the machine that builds, by an emulator where that is another one; without
+# one nothing is prepared.
+function(lacquer_prepare target)
+  set(output "${PROJECT_BINARY_DIR}/prepared_models.cpp")
+  set_source_files_properties("${output}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  target_sources(${target} PRIVATE "${output}")
+  if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
+    file(WRITE "${output}" "#include \"setting/prepared.h\"\n\nstd::span<const lacquer::model::Prepared> lacquer::preparedModels() { return {}; }\n")
+    return()
+  endif()
+  lacquer_program(lacquer_prepare src/material/prepare ${ARGN})
+  if(EMSCRIPTEN)
+    # It runs once, and what emscripten optimizes JavaScript with need not be there.
+    target_link_options(lacquer_prepare PRIVATE -O0 -sALLOW_MEMORY_GROWTH=1 -sWASM_ASYNC_COMPILATION=0)
+  endif()
+  add_custom_command(OUTPUT "${output}" COMMAND lacquer_prepare > "${output}" COMMENT "Preparing the models" VERBATIM)
+endfunction()

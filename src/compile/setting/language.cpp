@@ -64,7 +64,7 @@ Diagnostics Language::check() const {
     const Result<const model::Model*> model = models.of(profile, lods);
     if (!model) return add(model.error());
     for (const auto& [lower, upper] : (*model)->unordered)
-      add({model::unorderedParts(*(*model)->parts[lower].decl, *(*model)->parts[upper].decl)});
+      add({model::unorderedParts((*model)->declOf(lower), (*model)->declOf(upper))});
   };
   for (const lang::ProfileDecl* profile : *profiles) see(profile->name, {});
   for (const std::string_view lod : names(lang::DeclKind::Lod)) see((*profiles)[0]->name, {std::string(lod)});

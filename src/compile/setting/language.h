@@ -11,13 +11,14 @@
 #include "lang/library.h"
 #include "material/material.h"
 #include "model/model.h"
+#include "setting/prepared.h"
 #include "support/file.h"
 
 namespace lacquer {
 
 struct Language : lang::Library {
   explicit Language(lang::Library&& library, materialx::Definitions definitions = {})
-      : lang::Library(std::move(library)), models(*this, std::move(definitions)) {}
+      : lang::Library(std::move(library)), models(*this, std::move(definitions), preparedModels()) {}
   Language(const Language&) = delete;
   Language& operator=(const Language&) = delete;
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "lower/lower.h"
 #include "model/attributes.h"
@@ -170,21 +171,24 @@ std::string shaderId(const ir::Module& module, const lang::Library& library) {
 std::string shaderId(const ir::Module& module, const lang::Library& library, const Digest& digest) {
   std::vector<ir::ValueId> roots;
   for (const ir::Output& output : module.outputs) roots.push_back(output.value);
-  const std::vector<ir::ValueId> values = ir::reachable(module.dag, roots);
-  const auto has = [&](std::string_view part) {
-    const std::string prefix = std::string(part) + ".";
-    return std::any_of(values.begin(), values.end(), [&](ir::ValueId id) {
-      return module.dag.terms()[module.dag.termOf(id)].name.starts_with(prefix);
-    });
-  };
+  std::set<std::string_view> parts;
+  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
+    const std::string_view term = module.dag.terms()[module.dag.termOf(id)].name;
+    if (const size_t point = term.find('.'); point != std::string_view::npos)
+      parts.insert(term.substr(0, point));
+  }
   std::string_view kind = "graph";
   for (const std::string_view name : library.names(lang::DeclKind::Layers)) {
     const Result<const lang::LayersDecl*> layers = library.layers(name);
     if (!layers || (*layers)->parts.empty()) continue;
     kind = (*layers)->parts[0];
-    for (const std::string_view part : (*layers)->parts) {
-      const Result<const lang::PartDecl*> decl = library.part(part);
-      if (decl && !(*decl)->of.empty() && has(part)) kind = part;
+    // From the outside inwards: a part is read only where it is there.
+    for (auto part = (*layers)->parts.rbegin(); part != (*layers)->parts.rend(); ++part) {
+      if (!parts.contains(*part)) continue;
+      const Result<const lang::PartDecl*> decl = library.part(*part);
+      if (!decl || (*decl)->of.empty()) continue;
+      kind = *part;
+      break;
     }
   }
   return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(digest));

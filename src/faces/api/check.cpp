@@ -127,7 +127,7 @@ public:
     const model::Model& model = **compiled;
     const auto sayAt = [&](uint32_t index, lang::Span span, std::string code, std::string message,
                            std::string help) {
-      const lang::PartDecl& part = *model.parts[index].decl;
+      const lang::PartDecl& part = model.declOf(index);
       Diagnostic warning{std::move(code),    Severity::Warning, {std::string(part.origin.file), 0, 0, {}},
                          std::move(message), std::move(help),   {}};
       locate(warning, *textOf(part.origin.file), span.offset, span.length);
@@ -138,17 +138,17 @@ public:
         sayAt(part, span, "out-of-range", std::move(message), "no material of the range has that");
     };
     const auto own = [&](uint32_t part) {
-      return part < model.parts.size() && textOf(model.parts[part].decl->origin.file) != nullptr;
+      return part < model.parts.size() && textOf(model.parts[part].origin.file) != nullptr;
     };
     for (const model::Term& term : model.terms) {
       if (!own(term.part)) continue;
-      const lang::Span span = model.parts[term.part].decl->span;
+      const lang::Span span = model.declOf(term.part).span;
       compared(term.part, span, term.when);
       if (term.has_unless) compared(term.part, span, term.unless);
     }
     for (const model::Line& line : model.lines) {
       if (!own(line.part) || line.kind != lang::LineDecl::Kind::Value) continue;
-      const lang::PartDecl& part = *model.parts[line.part].decl;
+      const lang::PartDecl& part = model.declOf(line.part);
       const std::string_view id = model.ids[line.id].name;
       const auto decl = std::find_if(part.lines.begin(), part.lines.end(),
                                      [&](const lang::LineDecl& one) { return one.id == id; });

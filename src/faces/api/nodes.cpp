@@ -262,7 +262,7 @@ Json operationsJson() {
 const lang::NodeDecl* nodeOf(const model::Model& model, const model::Id& id) {
   for (const uint32_t line : id.lines) {
     for (const model::Alternative& one : model.lines[line].alternatives) {
-      if (one.value.kind == model::Value::Kind::Call) return one.value.node;
+      if (one.value.kind == model::Value::Kind::Call) return &model.nodeOf(one.value);
     }
   }
   return nullptr;
@@ -272,9 +272,8 @@ Json lineJson(const model::Model& model, uint32_t index, const model::Types& typ
   const model::Id& id = model.ids[index];
   const model::Line& first = model.lines[id.lines[0]];
   const bool of_part = first.part < model.parts.size();
-  Json json = {
-      {"name", id.name},
-      {of_part ? "part" : "profile", of_part ? model.parts[first.part].decl->name : model.profile->name}};
+  Json json = {{"name", id.name},
+               {of_part ? "part" : "profile", of_part ? model.parts[first.part].name : model.profile}};
   model::Value value;
   value.kind = model::Value::Kind::Id;
   value.index = index;

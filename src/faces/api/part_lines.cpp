@@ -78,12 +78,13 @@ std::string undeclaredChannels(const model::Model& model, const model::Value& va
     if (arg.kind != model::Value::Kind::Role || !arg.image) continue;
     const lang::PropertyDecl& texture = *model.schema->properties[model.roles[arg.index].providers[0]].decl;
     if (texture.channels.empty()) continue;
-    std::string beyond = channelsRead(*value.node, i);
+    const lang::NodeDecl& node = model.nodeOf(value);
+    std::string beyond = channelsRead(node, i);
     std::erase_if(beyond,
                   [&](char letter) { return texture.channels.find(letter) != std::string_view::npos; });
     if (beyond.empty()) continue;
     return fmt::format("'{}' has the channels {}, and '{}' reads {} of it", texture.name, texture.channels,
-                       value.node->name, beyond);
+                       node.name, beyond);
   }
   return {};
 }

@@ -259,6 +259,7 @@ Result<std::string> Library::defaultTemplate() const {
 
 Result<std::string> Library::defaultProfile() const {
   const std::lock_guard lock(impl_->mutex);
+  if (impl_->default_profile != nullptr) return std::string(impl_->default_profile->name);
   std::vector<const Entry*> found;
   const Entry* last = nullptr;
   for (const Entry& entry : impl_->entries) {
@@ -268,7 +269,10 @@ Result<std::string> Library::defaultProfile() const {
     Reporter silent(entry.file->name, entry.file->text);
     if (tokenize(silent, behind, entry.end)[0].is("default")) found.push_back(&entry);
   }
-  if (found.size() == 1) return std::string(found[0]->name);
+  if (found.size() == 1) {
+    impl_->default_profile = found[0];
+    return std::string(found[0]->name);
+  }
   const Entry* shown = found.empty() ? last : found[1];
   Place place;
   if (shown != nullptr) place = {std::string(shown->file->name), shown->line, 0, {}};

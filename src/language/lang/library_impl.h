@@ -119,6 +119,7 @@ public:
   bool has_standard = false;  ///< it has the standard nodes, each file of which is read when it is wanted
   /// The default one, once it was looked for; more files may bring another.
   const Entry* default_template = nullptr;
+  const Entry* default_profile = nullptr;  ///< likewise
 
 private:
   tl::unexpected<Diagnostics> missing(DeclKind kind, std::string_view name);

@@ -19,6 +19,7 @@ constexpr size_t kLargestFile = size_t{64} << 20U;
 Diagnostics Library::Impl::scanFrom(size_t first) {
   const size_t old_entries = entries.size();
   default_template = nullptr;
+  default_profile = nullptr;
   Diagnostics errors;
   for (size_t i = first; i < files.size(); ++i) {
     File& file = files[i];

@@ -434,12 +434,11 @@ void Writer::notTaken() {
     graph_.skip(model_.terms[i].name, "nothing that the template takes needs it");
   }
   // Lines of the library's own that need what is not there are its terms' to tell.
-  const auto built_in = [](const auto& part) { return part.decl->origin.built_in; };
+  const auto built_in = [](const auto& part) { return part.origin.built_in; };
   if (std::all_of(model_.parts.begin(), model_.parts.end(), built_in)) return;
   for (const Line& line : model_.lines) {
     if (line.term == Line::kNone || line.part >= model_.parts.size()) continue;
-    if (model_.parts[line.part].decl->origin.built_in || !used[line.term] || !resolver_.alive(line.term))
-      continue;
+    if (model_.parts[line.part].origin.built_in || !used[line.term] || !resolver_.alive(line.term)) continue;
     if (std::string why = resolver_.unmade(line); !why.empty())
       graph_.skip(model_.ids[line.id].name, std::move(why));
   }

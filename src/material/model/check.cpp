@@ -86,7 +86,8 @@ bool Check::fits(const Value& value, std::string_view path, std::set<uint32_t>& 
   if (value.kind == Value::Kind::Below) return true;
   if (value.kind != Value::Kind::Call) return false;
   const std::string_view head = path.substr(0, path.find('.'));
-  const bool output = std::any_of(value.node->results.begin(), value.node->results.end(),
+  const std::vector<lang::Param>& results = model_.nodeOf(value).results;
+  const bool output = std::any_of(results.begin(), results.end(),
                                   [&](const lang::Param& result) { return result.name == head; });
   return output && (head.size() == path.size() || isSwizzle(path.substr(head.size() + 1)));
 }
@@ -121,9 +122,9 @@ const Uses::Placed* Check::profiles(const Value& value) const {
 /// The library's own profile is right: what does not suit it in another text is wrong there.
 bool Check::ownsMistake(const Uses::Argument& use, const Uses::Placed& profile) const {
   const auto built_in = [&](const Text& text) {
-    const bool of_profile = model_.profile->origin.built_in && model_.profile->origin.file == text.file;
+    const bool of_profile = model_.profile_origin.built_in && model_.profile_origin.file == text.file;
     return of_profile || std::any_of(model_.parts.begin(), model_.parts.end(), [&](const Part& part) {
-             return part.decl->origin.built_in && part.decl->origin.file == text.file;
+             return part.origin.built_in && part.origin.file == text.file;
            });
   };
   return built_in(profile.text) && !built_in(use.text);
@@ -160,8 +161,9 @@ const lang::NodeDecl* Check::several(const Value& value) const {
   for (const uint32_t line : model_.ids[value.index].lines) {
     for (const Alternative& one : model_.lines[line].alternatives) {
       if (one.value.kind == Value::Kind::None) continue;
-      if (one.value.kind != Value::Kind::Call || one.value.node->results.size() < 2) return nullptr;
-      node = one.value.node;
+      if (one.value.kind != Value::Kind::Call) return nullptr;
+      node = &model_.nodeOf(one.value);
+      if (node->results.size() < 2) return nullptr;
     }
   }
   return node;
@@ -235,7 +237,7 @@ void Check::doubles() {
     if (alone || model_.lines[other->second->line].part == line.part) continue;
     const bool profile = line.part == model_.parts.size();
     // The library's own lines are right.
-    const bool library = line.part < model_.parts.size() && model_.parts[line.part].decl->origin.built_in;
+    const bool library = line.part < model_.parts.size() && model_.parts[line.part].origin.built_in;
     const Uses::Placed& here = library ? *other->second : placed;
     const Uses::Placed& there = library ? placed : *other->second;
     error(here.text, here.decl->span, "duplicate-name",
@@ -251,7 +253,7 @@ void Check::typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, st
   const Line& line = model_.lines[placed.line];
   for (size_t i = 0; i < line.alternatives.size(); ++i) {
     const Value& value = line.alternatives[i].value;
-    const lang::NodeDecl* node = value.kind == Value::Kind::Call ? value.node : several(value);
+    const lang::NodeDecl* node = value.kind == Value::Kind::Call ? &model_.nodeOf(value) : several(value);
     if (node != nullptr && node->results.size() > 1) {
       error(placed.text, placed.decl->alternatives[i].value->span, "unknown-output",
             fmt::format("{} takes one value, '{}' has several results", what, node->name),

@@ -12,6 +12,7 @@
 #include "lang/reporter.h"
 #include "lang/suggest.h"
 #include "model/check.h"
+#include "model/connect.h"
 #include "model/model.h"
 #include "model/names.h"
 #include "model/order.h"
@@ -37,7 +38,7 @@ public:
 private:
   void collectParts();
   void declare(const std::vector<LineDecl>& lines, bool overlay);
-  void enter(const Part& part);
+  void enter(uint32_t part);
   void enter(const lang::ProfileDecl& overlay);
   void findOverridden();
   void part(uint32_t index);
@@ -63,8 +64,6 @@ private:
   void checkNames();
   void checkWriterNames();
   void checkLines();
-  void findLive();
-  void order();
 
   void error(Span span, std::string code, std::string message, std::string help = {});
   void error(const Text& source, Span span, std::string code, std::string message, std::string help = {});
@@ -75,6 +74,8 @@ private:
   Text source_;
   Diagnostics wrong_;
   Uses uses_;
+  std::vector<const lang::PartDecl*> decls_;        ///< of the parts
+  std::map<std::string_view, uint32_t> nodes_;      ///< the model's, by name
   std::vector<const lang::ProfileDecl*> overlays_;  ///< the lods, then the profile: the first has its say
   std::vector<std::map<uint32_t, const LineDecl*>> overriding_;  ///< their lines, by id
   std::set<const LineDecl*> placed_;                             ///< those that stand in place of others
@@ -123,7 +124,8 @@ void Compiler::collectParts() {
   }
   for (const lang::PartDecl* decl : withInserted(library_, std::move(parts), wrong_)) {
     Part part;
-    part.decl = decl;
+    part.name = decl->name;
+    part.origin = decl->origin;
     source_ = {decl->origin.file, decl->text};
     for (const std::string_view name : decl->of) {
       if (const std::optional<uint16_t> extension = model_.schema->find(name)) {
@@ -134,26 +136,28 @@ void Compiler::collectParts() {
       }
     }
     model_.parts.push_back(std::move(part));
+    decls_.push_back(decl);
   }
   // The names that all share come first, so that a vendor's text is wrong where it takes one.
   for (const bool vendors : {false, true}) {
-    for (const Part& part : model_.parts) {
-      enter(part);
-      if (vendors != names_.vendor().empty()) declare(part.decl->lines, false);
+    for (uint32_t i = 0; i < decls_.size(); ++i) {
+      enter(i);
+      if (vendors != names_.vendor().empty()) declare(decls_[i]->lines, false);
     }
   }
 }
 
 /// What is resolved from now on stands in the text of a part.
-void Compiler::enter(const Part& part) {
-  source_ = {part.decl->origin.file, part.decl->text};
+void Compiler::enter(uint32_t part) {
+  source_ = {decls_[part]->origin.file, decls_[part]->text};
   std::vector<std::string_view> vendors;
   const auto add = [&](std::string_view vendor) {
     if (!vendor.empty() && std::find(vendors.begin(), vendors.end(), vendor) == vendors.end())
       vendors.push_back(vendor);
   };
-  add(part.decl->origin.vendor);
-  for (const uint16_t extension : part.of) add(model_.schema->extensions[extension]->origin.vendor);
+  add(decls_[part]->origin.vendor);
+  for (const uint16_t extension : model_.parts[part].of)
+    add(model_.schema->extensions[extension]->origin.vendor);
   names_.setVendors(std::move(vendors));
 }
 
@@ -231,7 +235,7 @@ void Compiler::carry(Line& line, const LineDecl& decl) {
                                  [](const Alternative& one) { return one.value.kind == Value::Kind::Call; });
   if (!calls || (!out && line.kind != LineDecl::Kind::Replace)) return;
   const bool of_part = line.part < model_.parts.size();
-  const std::string_view owner = of_part ? model_.parts[line.part].decl->name : overlay_;
+  const std::string_view owner = of_part ? model_.parts[line.part].name : overlay_;
   const std::string_view what = out ? decl.id : names_.textOf(source_.text, decl.target->span);
   Line own = line;
   own.kind = LineDecl::Kind::Value;
@@ -251,26 +255,12 @@ void Compiler::carry(Line& line, const LineDecl& decl) {
 void Compiler::place(Line line, const LineDecl& decl) {
   carry(line, decl);
   const auto index = static_cast<uint32_t>(model_.lines.size());
-  switch (line.kind) {
-    case LineDecl::Kind::Value:
-    case LineDecl::Kind::Flag: model_.ids[line.id].lines.push_back(index); break;
-    case LineDecl::Kind::Out: model_.outs[line.id].lines.push_back(index); break;
-    case LineDecl::Kind::Replace:
-      if (line.target.kind == Value::Kind::Id) model_.ids[line.target.index].replaced.push_back(index);
-      break;
-    case LineDecl::Kind::Require:
-      if (line.term != Line::kNone) model_.terms[line.term].requirements.push_back(index);
-      break;
-  }
-  for (uint32_t term = line.kind == LineDecl::Kind::Value ? line.term : Line::kNone; term != Line::kNone;
-       term = model_.terms[term].parent)
-    model_.terms[term].valued = true;
   model_.lines.push_back(std::move(line));
   uses_.lines.push_back({index, &decl, source_});
 }
 
 void Compiler::part(uint32_t index) {
-  const lang::PartDecl& decl = *model_.parts[index].decl;
+  const lang::PartDecl& decl = *decls_[index];
   const auto first = static_cast<uint32_t>(model_.terms.size());
   model_.parts[index].term = first;
   for (const lang::TermDecl& term : decl.terms) {
@@ -286,7 +276,7 @@ void Compiler::part(uint32_t index) {
 }
 
 void Compiler::nameTerms(uint32_t index) {
-  const std::vector<lang::TermDecl>& terms = model_.parts[index].decl->terms;
+  const std::vector<lang::TermDecl>& terms = decls_[index]->terms;
   for (size_t i = 0; i < terms.size(); ++i) {
     if (names_.addTerm(terms[i].name, model_.parts[index].term + static_cast<uint32_t>(i))) continue;
     error(terms[i].span, "duplicate-name",
@@ -295,8 +285,8 @@ void Compiler::nameTerms(uint32_t index) {
 }
 
 void Compiler::lines(uint32_t part, uint32_t first_term) {
-  const lang::PartDecl& decl = *model_.parts[part].decl;
-  enter(model_.parts[part]);
+  const lang::PartDecl& decl = *decls_[part];
+  enter(part);
   for (size_t i = 0; i < decl.terms.size(); ++i) {
     Term& term = model_.terms[first_term + i];
     if (decl.terms[i].when) term.when = condition(decl.terms[i].when);
@@ -325,14 +315,14 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
       if (found == overriding_[k].end()) continue;
       const LineDecl* other = found->second;
       // Where a lod's line comes to nothing, the one in whose place it stands holds.
-      replaced = overlays_[k] == model_.profile;
+      replaced = k + 1 == overlays_.size();
       if (!placed_.insert(other).second) continue;
       const uint32_t id = found->first;
       enter(*overlays_[k]);
       overridden(id, own, *other);
       uses_.overlays.insert(static_cast<uint32_t>(model_.lines.size()));
       put(*other);
-      enter(model_.parts[part]);
+      enter(part);
     }
     if (!replaced) put(own);
   }
@@ -447,7 +437,9 @@ Value Compiler::call(const Expr& expr) {
     }
     return {};
   }
-  out.node = *node;
+  const auto [known, fresh] = nodes_.try_emplace((*node)->name, static_cast<uint32_t>(model_.nodes.size()));
+  if (fresh) model_.nodes.emplace_back((*node)->name, *node);
+  out.index = known->second;
   out.variant = expr.variant;
   if (!expr.variant.empty() && (*node)->find(expr.variant) == nullptr) {
     error(expr.span, "unknown-variant", fmt::format("'{}' has no variant '{}'", expr.name, expr.variant));
@@ -466,7 +458,7 @@ Value Compiler::call(const Expr& expr) {
 }
 
 void Compiler::argument(Value& call, const Expr& expr, size_t at) {
-  const std::vector<lang::Param>& params = call.node->params;
+  const std::vector<lang::Param>& params = model_.nodeOf(call).params;
   size_t index = at;
   if (!expr.labels[at].empty()) {
     const auto param = std::find_if(params.begin(), params.end(),
@@ -684,60 +676,6 @@ void Compiler::checkWriterNames() {
   }
 }
 
-namespace {
-
-/// Calls `see(role, member)` for every property in a value or a condition.
-template <class See>
-void rolesOf(const Value& value, const See& see) {
-  if (value.kind == Value::Kind::Role) see(value.index, value.member);
-  for (const Value& arg : value.args) rolesOf(arg, see);
-}
-
-template <class See>
-void rolesOf(const Condition& condition, const See& see) {
-  for (const Value& value : condition.values) rolesOf(value, see);
-  for (const Condition& inner : condition.conditions) rolesOf(inner, see);
-}
-
-}  // namespace
-
-/// A number stays editable for the terms whose `unless` asks for it, else for the terms that use it.
-void Compiler::findLive() {
-  std::set<std::pair<uint32_t, int>> asked;
-  const auto add = [&](uint32_t role, int member, std::string_view term) {
-    Role& to = model_.roles[role];
-    if (member >= static_cast<int>(to.member_live.size()))
-      to.member_live.resize(static_cast<size_t>(member) + 1);
-    auto& list = member < 0 ? to.live : to.member_live[static_cast<size_t>(member)];
-    if (std::find(list.begin(), list.end(), term) == list.end()) list.push_back(term);
-  };
-  for (const Term& term : model_.terms) {
-    rolesOf(term.unless, [&](uint32_t role, int member) {
-      asked.emplace(role, member);
-      add(role, member, term.name);
-    });
-  }
-  for (const Line& line : model_.lines) {
-    if (line.term == Line::kNone) continue;
-    const auto see = [&](uint32_t role, int member) {
-      if (!asked.contains({role, member})) add(role, member, model_.terms[line.term].name);
-    };
-    for (const Alternative& alternative : line.alternatives) rolesOf(alternative.value, see);
-  }
-}
-
-/// Which of the values that a dimmed port is given scale with the light lines whatever the material has. Of
-/// the others it is found for each material.
-void Compiler::order() {
-  for (size_t i = 0; i < model_.lines.size(); ++i) {
-    const Line& line = model_.lines[i];
-    if (line.kind == LineDecl::Kind::Value && line.order != Line::kNone)
-      model_.ordered.push_back(static_cast<uint32_t>(i));
-  }
-  std::stable_sort(model_.ordered.begin(), model_.ordered.end(),
-                   [&](uint32_t a, uint32_t b) { return model_.lines[a].order < model_.lines[b].order; });
-}
-
 /// What is made of a wrong line is wrong as well: of a text that has one, and of the library's own, no more
 /// is said.
 void Compiler::checkLines() {
@@ -745,7 +683,7 @@ void Compiler::checkLines() {
   std::set<std::string> files;
   for (const Diagnostic& one : wrong_) files.insert(one.place.file);
   for (const Part& part : model_.parts) {
-    if (!wrong_.empty() && part.decl->origin.built_in) files.insert(std::string(part.decl->origin.file));
+    if (!wrong_.empty() && part.origin.built_in) files.insert(std::string(part.origin.file));
   }
   for (Diagnostic& one : check(library_, model_, uses_)) {
     if (!files.contains(one.place.file)) wrong_.push_back(std::move(one));
@@ -755,13 +693,14 @@ void Compiler::checkLines() {
 Result<Model> Compiler::run(std::string_view profile, const std::set<std::string, std::less<>>& lods) {
   const Result<const lang::ProfileDecl*> found = library_.profile(profile);
   if (!found) return tl::make_unexpected(found.error());
-  model_.profile = *found;
+  model_.profile = (*found)->name;
+  model_.profile_origin = (*found)->origin;
   for (const std::string& name : lods) {
     const Result<const lang::ProfileDecl*> lod = library_.lod(name);
     if (!lod) return tl::make_unexpected(lod.error());
     overlays_.push_back(*lod);
   }
-  overlays_.push_back(model_.profile);
+  overlays_.push_back(*found);
   names_.addRoles();
   names_.addSwitches(wrong_);
   collectParts();
@@ -773,18 +712,17 @@ Result<Model> Compiler::run(std::string_view profile, const std::set<std::string
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
   for (const bool vendors : {false, true}) {
     for (uint32_t i = 0; i < model_.parts.size(); ++i) {
-      enter(model_.parts[i]);
+      enter(i);
       if (vendors != names_.vendor().empty()) nameTerms(i);
     }
   }
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
   for (const lang::ProfileDecl* overlay : overlays_) addedLines(*overlay);
+  connect(model_);
   checkNames();
   checkWriterNames();
   checkLines();
   if (!wrong_.empty()) return tl::make_unexpected(withWrongTemplates(library_, wrong_));
-  findLive();
-  order();
   model_.unordered = findUnordered(model_, library_);
   return std::move(model_);
 }

@@ -89,9 +89,11 @@ Scaling Dimming::below(const Value& value, std::string_view path, uint32_t part)
 }
 
 Scaling Dimming::call(const Value& value, std::string_view path, uint32_t part) {
+  // What a line calls has its bodies once it is asked for them.
+  const lang::NodeDecl& node = **model_.library->node(model_.nodes[value.index].name());
   std::vector<Scaling> args;
   for (size_t i = 0; i < value.args.size(); ++i) {
-    const lang::Param& param = value.node->params[i];
+    const lang::Param& param = node.params[i];
     // What comes to nothing is the default.
     Scaling arg = Scaling::Zero;
     if (param.hasDefault()) arg = lang::scalingOf(param);
@@ -101,12 +103,10 @@ Scaling Dimming::call(const Value& value, std::string_view path, uint32_t part) 
     }
     args.push_back(arg);
   }
-  // What a line calls has its bodies once it is asked for them.
-  const lang::NodeDecl& node = **model_.library->node(value.node->name);
   const std::vector<Scaling>& results = nodes_.of(node, value.variant, args);
   const std::string_view head = path.substr(0, path.find('.'));
   for (size_t i = 0; i < results.size(); ++i) {
-    if (!head.empty() && value.node->results[i].name == head) return results[i];
+    if (!head.empty() && node.results[i].name == head) return results[i];
   }
   // A name of no output, and a whole node of several, come to nothing.
   const bool whole = results.size() == 1 && (path.empty() || isSwizzle(path));

@@ -6,10 +6,12 @@
 // that needs it comes to nothing as well, unless the node's parameter has a default.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +30,7 @@ struct Value {
     Below,     ///< `index` in Model::outs: the value that the parts below put out
     Role,      ///< `index` in Model::roles
     Given,     ///< `index` in Model::givens: of the template
-    Call,      ///< of `node`, `args` by its parameters
+    Call,      ///< of `index` in Model::nodes, `args` by its parameters
   };
   Kind kind = Kind::None;
   ir::Type type = ir::Type::Float;
@@ -40,7 +42,6 @@ struct Value {
   ir::Components constant{};
   std::string_view
       path;  ///< Id, Below: an output, a swizzle, or both, from a point on; Role, Given: a swizzle
-  const lang::NodeDecl* node = nullptr;
   std::string_view variant;
   std::vector<Value> args;
 };
@@ -117,9 +118,25 @@ struct Term {
 };
 
 struct Part {
-  const lang::PartDecl* decl = nullptr;
+  std::string_view name;
+  lang::Origin origin;
   std::vector<uint16_t> of;  ///< extensions; empty for any material
   uint32_t term = 0;
+};
+
+/// A node that lines call. Its declaration is looked for when it is first asked for: a material needs few of
+/// them.
+class Node {
+public:
+  explicit Node(std::string_view name, const lang::NodeDecl* decl = nullptr) : name_(name), decl_(decl) {}
+  Node(Node&& other) noexcept : name_(other.name_), decl_(other.decl_.load()) {}
+  Node& operator=(Node&&) = delete;
+  std::string_view name() const { return name_; }
+  const lang::NodeDecl& of(const lang::Library& library) const;
+
+private:
+  std::string_view name_;
+  mutable std::atomic<const lang::NodeDecl*> decl_;
 };
 
 /// What parts call a property.
@@ -139,8 +156,10 @@ struct Out {
 struct Model {
   const lang::Library* library = nullptr;  ///< whose nodes the lines call
   const material::Schema* schema = nullptr;
-  const lang::ProfileDecl* profile = nullptr;
+  std::string_view profile;
+  lang::Origin profile_origin;
   std::vector<Part> parts;  ///< from the inside outwards
+  std::vector<Node> nodes;
   /// Pairs of them, the lower one first, that nothing but their names puts in this order (model/order.h).
   std::vector<std::pair<uint32_t, uint32_t>> unordered;
   std::vector<Term> terms;
@@ -161,6 +180,10 @@ struct Model {
   };
   std::shared_ptr<Scales> found_scales = std::make_shared<Scales>();
   bool scales(uint32_t line) const;
+  /// Of a Call. Its bodies are there once the library was asked for the node itself.
+  const lang::NodeDecl& nodeOf(const Value& call) const { return nodes[call.index].of(*library); }
+  /// A part as the library has it.
+  const lang::PartDecl& declOf(uint32_t part) const { return **library->part(parts[part].name); }
   /// Names of lines that the text gives none; Id::name views them.
   std::vector<std::shared_ptr<const std::string>> made_names;
 
@@ -188,10 +211,18 @@ Result<Model> compile(const lang::Library& library, const material::Schema& sche
 /// default.
 Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& library);
 
+/// The model of a profile of the library's own texts, in bytes (model/bytes.h).
+struct Prepared {
+  std::string_view profile;
+  std::string_view bytes;
+};
+
 /// What a library makes of materials, resolved once and kept. Lookups may run on several threads at once.
 class Models {
 public:
-  explicit Models(const lang::Library& library, materialx::Definitions definitions = {});
+  /// Where the library has its own texts alone, its models are read from those that were prepared.
+  explicit Models(const lang::Library& library, materialx::Definitions definitions = {},
+                  std::span<const Prepared> prepared = {});
   ~Models();
   Result<const material::Schema*> schema() const;
   Result<const Model*> of(std::string_view profile,

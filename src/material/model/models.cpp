@@ -3,6 +3,7 @@
 #include <mutex>
 #include <optional>
 
+#include "model/bytes.h"
 #include "model/model.h"
 
 namespace lacquer::model {
@@ -10,13 +11,24 @@ namespace lacquer::model {
 struct Models::State {
   const lang::Library& library;
   materialx::Definitions definitions;
+  std::span<const Prepared> prepared;
   std::mutex mutex;
   std::optional<Result<material::Schema>> schema;
   std::map<std::string, Result<Model>, std::less<>> models;
+
+  Result<Model> make(const material::Schema& of, std::string_view profile,
+                     const std::set<std::string, std::less<>>& lods) const {
+    const auto found = std::find_if(prepared.begin(), prepared.end(),
+                                    [&](const Prepared& one) { return one.profile == profile; });
+    if (found != prepared.end() && lods.empty() && library.isBuiltIn())
+      return fromBytes(found->bytes, library, of);
+    return compile(library, of, profile, lods);
+  }
 };
 
-Models::Models(const lang::Library& library, materialx::Definitions definitions)
-    : state_(new State{library, std::move(definitions), {}, {}, {}}) {}
+Models::Models(const lang::Library& library, materialx::Definitions definitions,
+               std::span<const Prepared> prepared)
+    : state_(new State{library, std::move(definitions), prepared, {}, {}, {}}) {}
 Models::~Models() = default;
 
 Result<const material::Schema*> Models::schema() const {
@@ -38,7 +50,7 @@ Result<const Model*> Models::of(std::string_view profile,
   for (const std::string& lod : lods) key += "\n" + lod;
   auto it = state_->models.find(key);
   if (it == state_->models.end())
-    it = state_->models.emplace(key, compile(state_->library, **schema, profile, lods)).first;
+    it = state_->models.emplace(key, state_->make(**schema, profile, lods)).first;
   if (!it->second) return tl::make_unexpected(it->second.error());
   return &*it->second;
 }
@@ -110,6 +122,16 @@ std::vector<std::pair<std::string, std::vector<std::string>>> Model::absent(
     }
   }
   return {all.begin(), all.end()};
+}
+
+const lang::NodeDecl& Node::of(const lang::Library& library) const {
+  // Two threads find the same.
+  const lang::NodeDecl* decl = decl_.load(std::memory_order_acquire);
+  if (decl == nullptr) {
+    decl = *library.node(name_);
+    decl_.store(decl, std::memory_order_release);
+  }
+  return *decl;
 }
 
 std::optional<std::vector<std::string>> Model::keeping(std::string_view path) const {

@@ -161,8 +161,8 @@ std::vector<std::pair<uint32_t, uint32_t>> findUnordered(const Model& model, con
   ByName names;
   std::vector<uint32_t> inserted;
   for (uint32_t i = 0; i < model.parts.size(); ++i) {
-    names.emplace(model.parts[i].decl->name, model.parts[i].decl);
-    if (!listed.contains(model.parts[i].decl->name)) inserted.push_back(i);
+    names.emplace(model.parts[i].name, &model.declOf(i));
+    if (!listed.contains(model.parts[i].name)) inserted.push_back(i);
   }
   const std::map<uint32_t, Touched> touched = touchedBy(model, inserted);
   std::vector<std::pair<uint32_t, uint32_t>> pairs;
@@ -170,7 +170,7 @@ std::vector<std::pair<uint32_t, uint32_t>> findUnordered(const Model& model, con
     // Those up to the next listed part are over the same one.
     for (size_t j = k + 1; j < inserted.size() && inserted[j] - inserted[k] == j - k; ++j) {
       const uint32_t lower = inserted[k], upper = inserted[j];
-      if (liesOver(*model.parts[upper].decl, *model.parts[lower].decl, names)) continue;
+      if (liesOver(model.declOf(upper), model.declOf(lower), names)) continue;
       if (orderMatters(touched.at(lower), touched.at(upper))) pairs.emplace_back(lower, upper);
     }
   }

@@ -242,14 +242,14 @@ bool Resolver::hasDefault(const lang::Param& param) const {
 
 Found Resolver::call(const Value& value, const Line& line) {
   Node node;
-  node.decl = value.node;
+  node.decl = &model_.nodeOf(value);
   node.variant = value.variant;
   node.shared = line.shared;
   node.order = line.order;
   node.inputs.reserve(value.args.size());
   for (size_t i = 0; i < value.args.size(); ++i) {
     node.inputs.push_back(value.args[i].absent ? Found{} : found(value.args[i], line));
-    if (!node.inputs.back() && !hasDefault(value.node->params[i])) return {};
+    if (!node.inputs.back() && !hasDefault(node.decl->params[i])) return {};
   }
   nodes_[line.id] = std::move(node);
   Found out;
@@ -331,7 +331,7 @@ void Resolver::checkDimmed(const Line& line) {
     wrong(line.part, "light-not-dimmed",
           fmt::format(
               "'{}' is dimmed for the parts below, but what '{}' puts out as '{}' does not scale with it",
-              model_.ids[line.target.index].name, model_.parts[other->part].decl->name, port),
+              model_.ids[line.target.index].name, model_.parts[other->part].name, port),
           fmt::format("replace it only when dimmable({}), and dim 'below.{}' else", port, port));
   }
 }
@@ -396,8 +396,7 @@ void Resolver::circle(uint32_t id) {
 /// An error of a part's text, once.
 void Resolver::wrong(uint32_t part, std::string code, std::string message, std::string help) {
   if (!wrong_.empty()) return;
-  const lang::Origin& origin =
-      part < model_.parts.size() ? model_.parts[part].decl->origin : model_.profile->origin;
+  const lang::Origin& origin = part < model_.parts.size() ? model_.parts[part].origin : model_.profile_origin;
   wrong_.push_back({std::move(code),
                     Severity::Error,
                     {std::string(origin.file), origin.line, 0, {}},
@@ -644,7 +643,7 @@ std::string Resolver::missing(const Value& value, const Line& line, int depth) {
       return {};
     case Value::Kind::Call:
       for (size_t i = 0; i < value.args.size(); ++i) {
-        if (hasDefault(value.node->params[i])) continue;
+        if (hasDefault(model_.nodeOf(value).params[i])) continue;
         if (std::string why = missing(value.args[i], line, depth + 1); !why.empty()) return why;
       }
       return {};
@@ -772,7 +771,7 @@ Diagnostics Resolver::unordered() {
     const Part& below = model_.parts[lower];
     const Part& above = model_.parts[upper];
     if (!has(below) || !has(above) || !alive(below.term) || !alive(above.term)) continue;
-    warnings.push_back(unorderedParts(*below.decl, *above.decl));
+    warnings.push_back(unorderedParts(model_.declOf(lower), model_.declOf(upper)));
     warnings.back().place = {{}, 0, 0, fmt::format("/materials/{}", material_.index)};
     warnings.back().excerpt.clear();
   }

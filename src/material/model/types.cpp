@@ -83,7 +83,7 @@ std::optional<ir::Type> Types::agreed(uint32_t id, std::string_view path, int de
 }
 
 std::optional<ir::Type> Types::call(const Value& value, std::string_view path) const {
-  const std::vector<lang::Param>& results = value.node->results;
+  const std::vector<lang::Param>& results = model_.nodeOf(value).results;
   const std::string_view head = path.substr(0, path.find('.'));
   for (const lang::Param& result : results) {
     if (head.empty() || result.name != head) continue;
