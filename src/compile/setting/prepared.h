@@ -7,8 +7,8 @@
 
 namespace lacquer {
 
-/// One for each profile of the library's own. None where they were not made: models are compiled then, as
-/// those of other texts are.
+/// One for each profile of the library's own, in WebAssembly for the default one. Where there is none, models
+/// are compiled, as those of other texts are.
 std::span<const model::Prepared> preparedModels();
 
 }  // namespace lacquer

@@ -273,8 +273,9 @@ public:
   }
   template <class T>
   void read(std::vector<T>& list) {
-    list.resize(number());
-    for (T& one : list) read(one);
+    std::vector<T> made(number());  // takes less code than resize()
+    for (T& one : made) read(one);
+    list = std::move(made);
   }
   void read(std::vector<bool>& list) {
     list.resize(number());

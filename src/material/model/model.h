@@ -211,10 +211,13 @@ Result<Model> compile(const lang::Library& library, const material::Schema& sche
 /// default.
 Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& library);
 
-/// The model of a profile of the library's own texts, in bytes (model/bytes.h).
+/// The model of a profile of the library's own texts, in bytes, and what reads them: fromBytes() of
+/// model/bytes.h.
 struct Prepared {
   std::string_view profile;
   std::string_view bytes;
+  Model (*read)(std::string_view bytes, const lang::Library& library,
+                const material::Schema& schema) = nullptr;
 };
 
 /// What a library makes of materials, resolved once and kept. Lookups may run on several threads at once.

@@ -3,7 +3,6 @@
 #include <mutex>
 #include <optional>
 
-#include "model/bytes.h"
 #include "model/model.h"
 
 namespace lacquer::model {
@@ -21,7 +20,7 @@ struct Models::State {
     const auto found = std::find_if(prepared.begin(), prepared.end(),
                                     [&](const Prepared& one) { return one.profile == profile; });
     if (found != prepared.end() && lods.empty() && library.isBuiltIn())
-      return fromBytes(found->bytes, library, of);
+      return found->read(found->bytes, library, of);
     return compile(library, of, profile, lods);
   }
 };

@@ -1,7 +1,8 @@
 // Runs while Lacquer is built: writes the models of the library's own texts to standard output, as a C++ file
-// with the bytes of each profile's.
+// with the bytes of each profile's, or with --default of the default one's.
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 #include "model/bytes.h"
 #include "support/diagnostic.h"
@@ -23,14 +24,16 @@ void print(const std::string& bytes) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  const bool default_alone = argc > 1 && std::string_view(argv[1]) == "--default";
   const lang::Library library = lang::Library::embedded();
   const auto profiles = model::profiles(library);
   if (!profiles) return fail(profiles.error());
   const Result<material::Schema> schema = material::schemaOf(library);
   if (!schema) return fail(schema.error());
   std::printf(
-      "// Made by src/material/prepare/prepare.cpp.\n#include \"setting/prepared.h\"\n\nnamespace lacquer "
+      "// Made by src/material/prepare/prepare.cpp.\n#include \"setting/prepared.h\"\n\n#include "
+      "\"model/bytes.h\"\n\nnamespace lacquer "
       "{\n");
   std::string rows;
   for (const lang::ProfileDecl* profile : *profiles) {
@@ -41,7 +44,8 @@ int main() {
     print(bytes);
     std::printf("0};\n");
     rows += "    {\"" + name + "\", {reinterpret_cast<const char*>(k_" + name + "), sizeof(k_" + name +
-            ") - 1}},\n";
+            ") - 1}, &model::fromBytes},\n";
+    if (default_alone) break;  // it comes first
   }
   std::printf("\nstatic const model::Prepared kModels[] = {\n%s};\n", rows.c_str());
   std::printf(
