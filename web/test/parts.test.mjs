@@ -20,6 +20,7 @@ const { makeEnvironment, Turned } = await part('environment');
 const { element, FileLights } = await part('lights');
 const { Moves } = await part('moves');
 const { halves } = await part('gpu');
+const { viewOf } = await part('editor/view');
 const { frameBlocks } = await part('frame');
 const { kBlocks } = await part('viewport');
 const { bounds, eachNode, geometry, openGltf } = await part('gltf', 'web/src');
@@ -266,6 +267,23 @@ test('nodes that go in circles are walked once', () => {
   const places = [];
   eachNode(openGltf('a.gltf', Buffer.from(JSON.stringify({ nodes: [{}, { children: [0], translation: [5, 0, 0] }] }))), (_, world, index) => places.push([index, world[12]]));
   assert.deepEqual(places, [[1, 5], [0, 5]]);
+});
+
+test('a parameter and a texture stand in the bodies that name them, and in the graph where none does', () => {
+  const body = { nodes: [{ id: 'a', node: 'n', inputs: { x: { parameter: 'inner' }, y: { texture: 'image' } } }], outputs: { r: { node: 'a' } } };
+  const json = {
+    template: 'forward', nodes: [{ id: 'g', group: 'group' }], outputs: { color: { node: 'g' } }, groups: { group: body },
+    parameters: { inner: { type: 'float' }, outer: { type: 'float' }, idle: { type: 'float' } }, textures: { image: { type: 'sampler2D' } },
+  };
+  const socket = (name, source) => ({ name, type: 'float', low: null, high: null, or_zero: false, source: source ?? null, optional: true });
+  const sockets = { g: { inputs: [socket('x', { parameter: 'outer' })], outputs: [socket('')] }, 'group/a': { inputs: [socket('x', { parameter: 'inner' }), socket('y', { texture: 'image' })], outputs: [socket('')] } };
+  const graph = {
+    nodes: (group) => (group ? body.nodes : json.nodes), outputs: (group) => (group ? body.outputs : json.outputs),
+    sockets: (node) => sockets[node] ?? { inputs: [socket('color', { node: 'g' })], outputs: [] },
+  };
+  const keys = (group) => [...viewOf(graph, json, group).boxes.keys()];
+  assert.deepEqual(keys(''), ['group g', 'parameter outer', 'parameter idle', 'outputs ']);
+  assert.deepEqual(keys('group'), ['node a', 'parameter inner', 'texture image', 'outputs ']);
 });
 
 test('half floats are rounded to the nearest', () => {
