@@ -122,26 +122,29 @@ std::string optionsTable(std::string_view of) {
   const std::vector<Row> shared = sharedRows();
   const std::vector<Row> generation = without(common(rowsOf("gen"), rowsOf("plan")), shared);
   const std::vector<Row> all = rowsOf(of == "shared" || of == "generation" ? "gen" : std::string(of));
-  std::vector<Row> rows = without(without(all, shared), generation);
-  if (of == "shared") rows = shared;
-  if (of == "generation") rows = generation;
-  std::string out = "| option | argument | meaning |\n|---|---|---|\n";
-  for (const Row& row : rows) {
-    out += fmt::format("| `{}` | {} | {} |\n", row.flags, row.argument, row.meaning);
-  }
-  if (rows.empty()) ADD_FAILURE() << of << " has no options of its own";
-  if (of == "shared" || of == "generation" || of == "gen" || of == "plan") return out;
   // What stands in the tables above.
-  std::vector<Row> known = common(all, generation);
+  std::vector<Row> known;
+  if (of != "gen" && of != "plan") known = common(all, generation);
   if (!takesShared(all)) {
     const std::vector<Row> some = common(all, shared);
     known.insert(known.end(), some.begin(), some.end());
   }
+  for (const Row& row : without(without(rowsOf("eval"), shared), known)) {
+    const bool trial = of != "eval" && row.flags.starts_with("--") && row.flags != "--material";
+    if (trial && std::find(all.begin(), all.end(), row) != all.end()) known.push_back(row);
+  }
+  std::vector<Row> rows = without(without(without(all, shared), generation), known);
+  if (of == "shared") rows = shared;
+  if (of == "generation") rows = generation;
+  if (rows.empty()) ADD_FAILURE() << of << " has no options of its own";
+  std::string out = "| option | argument | meaning |\n|---|---|---|\n";
+  for (const Row& row : rows) {
+    out += fmt::format("| `{}` | {} | {} |\n", row.flags, row.argument, row.meaning);
+  }
+  if (known.empty() || of == "shared" || of == "generation") return out;
   std::string flags;
   for (const Row& row : known) flags += (flags.empty() ? "`" : "`, `") + row.flags;
-  if (!known.empty())
-    out += fmt::format("| {}` | | [as above](#options-that-several-verbs-share) |\n", flags);
-  return out;
+  return out + fmt::format("| {}` | | as above |\n", flags);
 }
 
 std::string takersLine() {
