@@ -99,6 +99,14 @@ void take(const std::vector<double>& from, std::array<float, N>& to) {
   for (size_t i = 0; i < N && from.size() == N; ++i) to[i] = static_cast<float>(from[i]);
 }
 
+/// What a node says of itself and of those below it.
+bool isVisible(const tinygltf::Node& node) {
+  const auto named = node.extensions.find("KHR_node_visibility");
+  if (named == node.extensions.end() || !named->second.Has("visible")) return true;
+  const tinygltf::Value& visible = named->second.Get("visible");
+  return !visible.IsBool() || visible.Get<bool>();
+}
+
 /// A node's light of EXT_lights_area.
 std::optional<lacquer::vk::AreaLight> areaOf(const tinygltf::Model& model, const tinygltf::Node& node,
                                              const Matrix& world) {
@@ -451,6 +459,7 @@ void Scene::animate(float seconds, Pointers& pointers) {
       } else if (within(node, nodes_)) {
         Node& to = nodes_[static_cast<size_t>(node)];
         if (path == "weights") to.weights = value;
+        if (path == "extensions/KHR_node_visibility/visible") to.visible = value[0] != 0;
         if (path == "translation" && width == 3) std::copy_n(value.begin(), 3, to.translation.begin());
         if (path == "scale" && width == 3) std::copy_n(value.begin(), 3, to.scale.begin());
         if (path == "rotation" && width == 4) std::copy_n(value.begin(), 4, to.rotation.begin());
@@ -459,13 +468,14 @@ void Scene::animate(float seconds, Pointers& pointers) {
   }
 }
 
-void Scene::place(int index, const Matrix& parent, int depth) {
+void Scene::place(int index, const Matrix& parent, bool hidden, int depth) {
   if (!within(index, nodes_) || nodes_[static_cast<size_t>(index)].shown || depth > kDeepest) return;
   Node& node = nodes_[static_cast<size_t>(index)];
   node.shown = true;
+  node.hidden = hidden || !node.visible;
   node.world = parent * (node.decomposed ? placed(node.translation, node.rotation, node.scale) : node.matrix);
   for (const int child : model_.nodes[static_cast<size_t>(index)].children)
-    place(child, node.world, depth + 1);
+    place(child, node.world, node.hidden, depth + 1);
 }
 
 Moment Scene::at(float seconds, const lacquer::Contract& contract) {
@@ -478,6 +488,7 @@ Moment Scene::at(float seconds, const lacquer::Contract& contract) {
     take(from.scale, nodes_[i].scale);
     take(from.matrix, nodes_[i].matrix);
     nodes_[i].decomposed = from.matrix.size() != 16;
+    nodes_[i].visible = isVisible(from);
     nodes_[i].weights.assign(from.weights.begin(), from.weights.end());
     if (from.weights.empty() && within(from.mesh, model_.meshes)) {
       const std::vector<double>& weights = model_.meshes[static_cast<size_t>(from.mesh)].weights;
@@ -487,7 +498,7 @@ Moment Scene::at(float seconds, const lacquer::Contract& contract) {
   animate(seconds, moment.pointers);
   const int scene = std::max(model_.defaultScene, 0);
   if (!within(scene, model_.scenes)) throw std::runtime_error("the file has no scene");
-  for (const int node : model_.scenes[static_cast<size_t>(scene)].nodes) place(node, kIdentity, 0);
+  for (const int node : model_.scenes[static_cast<size_t>(scene)].nodes) place(node, kIdentity, false, 0);
   for (const tinygltf::Skin& skin : model_.skins) {
     std::vector<float> binds;
     const bool bound =
@@ -510,7 +521,8 @@ Moment Scene::at(float seconds, const lacquer::Contract& contract) {
     if (!node.shown) continue;
     const bool skinned = within(from.skin, model_.skins);
     for (size_t p = 0; p < contract.primitives.size(); ++p) {
-      if (from.mesh < 0 || contract.primitives[p].mesh != static_cast<size_t>(from.mesh)) continue;
+      if (node.hidden || from.mesh < 0 || contract.primitives[p].mesh != static_cast<size_t>(from.mesh))
+        continue;
       const bool many = from.extensions.count("EXT_mesh_gpu_instancing") != 0;
       moment.draws.push_back({p, skinned ? kIdentity : node.world, &node.weights, skinned ? from.skin : -1,
                               many ? static_cast<int>(i) : -1});
@@ -529,6 +541,7 @@ Moment Scene::at(float seconds, const lacquer::Contract& contract) {
                 static_cast<float>(camera.orthographic.ymag)};
       moment.cameras.push_back(view);
     }
+    if (node.hidden) continue;  // cameras see from there all the same
     if (const auto area = areaOf(model_, from, node.world)) moment.areas.push_back(*area);
     const auto lit = from.extensions.find("KHR_lights_punctual");
     const int number = lit != from.extensions.end() && lit->second.Has("light")

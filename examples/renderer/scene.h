@@ -82,10 +82,12 @@ private:
     bool decomposed = true;
     std::vector<float> weights;
     Matrix world = kIdentity;
-    bool shown = false;
+    bool shown = false;   ///< the scene has it
+    bool visible = true;  ///< it says so (KHR_node_visibility)
+    bool hidden = false;  ///< it or one above it does not
   };
   void animate(float seconds, Pointers& pointers);
-  void place(int node, const Matrix& parent, int depth);
+  void place(int node, const Matrix& parent, bool hidden, int depth);
   const unsigned char* bytesOf(int view, size_t offset, size_t size, size_t count, size_t& stride) const;
   template <class T>
   bool read(int accessor, int type, std::vector<T>& numbers) const;

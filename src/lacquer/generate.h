@@ -88,7 +88,8 @@ private:
   friend std::string toMaterialX(const Scene&, const Strings&, const std::string&,
                                  const std::vector<EditedGraph>&, const Options&, Messages&);
   friend std::string toGltf(const Scene&, const Strings&, uint32_t, const Options&, Messages&);
-  friend std::optional<Tuned> tune(const Scene&, size_t, const Attributes&, const Options&, Messages&);
+  friend std::optional<Tuned> tune(const Scene&, size_t, const Attributes&, const Options&, Messages&,
+                                   const Progress&);
   struct Impl;
   const Impl& impl() const;
   std::shared_ptr<Impl> impl_;

@@ -226,7 +226,7 @@ private:
                                             const Options&, Messages&, const Trial&);
   friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&,
                                        const Trial&, const ValueLook&);
-  friend std::optional<Tuned> tune(const Graph&, const Options&, Messages&);
+  friend std::optional<Tuned> tune(const Graph&, const Options&, Messages&, const Progress&);
   friend std::string toMaterialX(const Scene&, const Strings&, const std::string&,
                                  const std::vector<EditedGraph>&, const Options&, Messages&);
   struct Impl;

@@ -38,6 +38,8 @@ struct Tuned {
   double plain = 0;    ///< cycles of the form as it is
   /// Each cheaper than the one before it, and off by more; the first is equal in real numbers.
   std::vector<TunedForm> forms;
+  /// Whether there are nodes to compute at the vertices: of a lit material, not of a node by itself.
+  bool has_vertices = false;
   /// The cheapest last, each further off than the one before it; each in its cheapest equal form.
   std::vector<TunedMove> moves;
 };
@@ -45,12 +47,15 @@ struct Tuned {
 /// The Pareto front of a node by itself: its parameters are inputs of each fragment in their declared ranges.
 /// `name`: a node, or one with a variant, "fresnel_conductor.exact". Of the options, `node_directories`,
 /// `optimize` (0 counts as 1) and `optimize_for`. Nothing on an error: "no-such-node", "no-such-variant".
-std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages);
+/// `progress` counts forms and sets of nodes that are tried.
+std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages,
+                          const Progress& progress = {});
 /// The same of a graph's shader; `moves` too, where it is no scene's.
-std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages);
+std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages,
+                          const Progress& progress = {});
 /// The same of a material on primitives with these attributes, with its `moves`, which pictures are made for
 /// as of makeLevels(). "no-such-material" where there is none of that index.
 std::optional<Tuned> tune(const Scene& scene, size_t material, const Attributes& attributes,
-                          const Options& options, Messages& messages);
+                          const Options& options, Messages& messages, const Progress& progress = {});
 
 }  // namespace lacquer

@@ -45,6 +45,30 @@ struct SetLayouts {
   std::vector<std::string> names[kSets];  ///< of the blocks and textures, binding by binding
   uint32_t textures = 1024;  ///< of shaders made by BindingModel::Bindless: how many an array of them has
 
+  SetLayouts() = default;
+  SetLayouts(SetLayouts&&) = default;
+  SetLayouts& operator=(SetLayouts&&) = default;
+  SetLayouts(const SetLayouts& other) { *this = other; }
+  /// A copy's bindings point to its own samplers.
+  SetLayouts& operator=(const SetLayouts& other) {
+    if (this == &other) return *this;
+    textures = other.textures;
+    fixed_ = other.fixed_;
+    for (uint32_t set = 0; set < kSets; ++set) {
+      sets[set] = other.sets[set];
+      names[set] = other.names[set];
+      flags_[set] = other.flags_[set];
+      for (VkDescriptorSetLayoutBinding& binding : sets[set]) {
+        for (size_t i = 0; i < fixed_.size(); ++i) {
+          if (binding.pImmutableSamplers != &other.fixed_[i].second) continue;
+          binding.pImmutableSamplers = &fixed_[i].second;
+          break;
+        }
+      }
+    }
+    return *this;
+  }
+
   /// Adds what a shader binds, in the sets from `first` to `last`. False where a block or texture of another
   /// name has the place: then that keeps it.
   bool add(const Reflection& reflection, const DynamicOffsets& dynamic = {}, uint32_t first = kFrameSet,
@@ -85,8 +109,8 @@ struct SetLayouts {
   }
   /// Makes the samplers of a shader that was added immutable where they are static
   /// (Options::static_samplers): what is written to such a binding is the image alone. `make` gives the
-  /// VkSampler of a VkSamplerCreateInfo, once for each kind; it must live as long as the layouts do, and so
-  /// must this, for the bindings point here. False where another shader's is there.
+  /// VkSampler of a VkSamplerCreateInfo, once for each kind; it must live as long as the layouts do. The
+  /// bindings point into this. False where another shader's is there.
   template <class Make>
   bool fixSamplers(const Reflection& reflection, const Make& make);
   /// What vkCreateDescriptorSetLayout() is given; it points here.

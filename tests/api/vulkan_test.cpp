@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <lacquer/vulkan.h>
 
+#include <memory>
+#include <utility>
+
 #include "inputs.h"
 
 namespace lacquer::test {
@@ -90,6 +93,46 @@ TEST(Vulkan, TemplatesShareTheObjectsSet) {
   vk::SetLayouts frames;
   EXPECT_TRUE(frames.add(shaderOf("forward").reflection(), {}, vk::kFrameSet, vk::kFrameSet));
   EXPECT_FALSE(frames.add(shaderOf("forward_clustered").reflection(), {}, vk::kFrameSet, vk::kFrameSet));
+}
+
+TEST(Vulkan, CopiedLayoutsPointToTheirOwnSamplers) {
+  Reflection reflection;
+  for (const uint32_t binding : {0U, 1U, 2U}) {
+    ReflectedTexture& texture = reflection.textures.emplace_back();
+    texture.name = std::string(1, static_cast<char>('a' + binding));
+    texture.at = {vk::kMaterialSet, binding};
+    texture.static_sampler = TextureSampler{};
+    if (binding == 2) texture.static_sampler->wrap_s = Wrap::Clamp;
+  }
+  uintptr_t made = 0;
+  const auto make = [&](const VkSamplerCreateInfo&) { return reinterpret_cast<VkSampler>(++made); };
+  const auto samplersOf = [](const vk::SetLayouts& layouts) {
+    std::vector<const VkSampler*> samplers;
+    for (const auto& binding : layouts.sets[vk::kMaterialSet]) samplers.push_back(binding.pImmutableSamplers);
+    return samplers;
+  };
+  auto original = std::make_unique<vk::SetLayouts>();
+  EXPECT_TRUE(original->add(reflection));
+  EXPECT_TRUE(original->fixSamplers(reflection, make));
+  const vk::SetLayouts copy(*original);
+  vk::SetLayouts assigned;
+  assigned = *original;
+  const std::vector<const VkSampler*> before = samplersOf(*original);
+  for (const vk::SetLayouts* one : {&copy, &std::as_const(assigned)}) {
+    const std::vector<const VkSampler*> own = samplersOf(*one);
+    ASSERT_EQ(own.size(), 3U);
+    EXPECT_EQ(own[0], own[1]);
+    for (size_t i = 0; i < own.size(); ++i) EXPECT_NE(own[i], before[i]) << i;
+  }
+  original.reset();  // the sanitizers see what still points there
+  for (const vk::SetLayouts* one : {&copy, &std::as_const(assigned)}) {
+    EXPECT_EQ(reinterpret_cast<uintptr_t>(*samplersOf(*one)[0]), 1U);
+    EXPECT_EQ(reinterpret_cast<uintptr_t>(*samplersOf(*one)[2]), 2U);
+  }
+  EXPECT_TRUE(assigned.fixSamplers(reflection, make)) << "they are known there, too";
+  EXPECT_EQ(made, 2U);
+  const vk::SetLayouts moved(std::move(assigned));
+  EXPECT_EQ(reinterpret_cast<uintptr_t>(*samplersOf(moved)[2]), 2U);
 }
 
 TEST(Vulkan, BlocksHaveTheirFieldsAtTheirOffsets) {

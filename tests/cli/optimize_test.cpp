@@ -158,6 +158,26 @@ TEST(Tune, MovesToTheVerticesAreSeenInPicturesAndMadeByTheirOptions) {
       << table.all();
 }
 
+TEST(Tune, SaysThatNothingPaysAndHowFarItIs) {
+  const Workplace place;
+  place.write("unlit.gltf", gltfOf({R"({"extensions": {"KHR_materials_unlit": {}}})"}));
+  const Outcome unlit = place.run({"tune", "unlit.gltf"}, kLong);
+  EXPECT_EQ(unlit.status, 0) << unlit.all();
+  EXPECT_NE(unlit.out.find("\nnothing cheaper was found\n\nno node pays at the vertices\n"),
+            std::string::npos)
+      << unlit.all();
+  const json none = json::parse(place.run({"tune", "unlit.gltf", "--json"}, kLong).out);
+  EXPECT_EQ(none["moves"], json::array());
+  const Outcome node = place.run({"tune", "schlick"}, kLong);
+  EXPECT_EQ(node.out.find("vertices"), std::string::npos) << node.all();
+  // A line for each fifty forms, where there is no terminal.
+  const Words subject{"tune", (sourceFolder() / "bench/works/w3.gltf").string(), "--lights", "directional:1",
+                      "--no-ibl"};
+  const Outcome loud = place.run(subject, kLong);
+  EXPECT_NE(loud.err.find(" forms tried\n"), std::string::npos) << loud.all();
+  EXPECT_EQ(place.run(words(subject, {"--quiet"}), kLong).err, "");
+}
+
 TEST(Tune, AFormIsAVariantThatStandsInANodesFile) {
   const Workplace place;
   const std::string node =

@@ -41,6 +41,7 @@ std::string regionText(std::string_view name) {
   if (kind == "source") return sourceLines(of);
   if (kind == "options") return optionsTable(of);
   if (kind == "verbs") return verbsTable();
+  if (kind == "takers") return takersLine();
   if (kind == "passes") return passesTable();
   if (kind == "standard") return standardNodes();
   if (kind == "lines") return linesTable();

@@ -1,5 +1,6 @@
 // What the program says of its own options.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,36 +95,75 @@ std::vector<Row> without(const std::vector<Row>& a, const std::vector<Row>& b) {
   return rest;
 }
 
+std::vector<Row> sharedRows() { return common(common(rowsOf("gen"), rowsOf("graph")), rowsOf("dump")); }
+
+/// Whether a verb has all options that several share, or others of their names.
+bool takesShared(const std::vector<Row>& rows) {
+  const std::vector<Row> shared = sharedRows();
+  return std::all_of(shared.begin(), shared.end(), [&](const Row& row) {
+    return std::any_of(rows.begin(), rows.end(), [&](const Row& own) { return own.flags == row.flags; });
+  });
+}
+
+/// What the program's help has of its verbs.
+std::vector<Row> verbRows() {
+  std::vector<Row> rows;
+  bool inside = false;
+  for (const std::string& line : split(helpOf(""), "\n")) {
+    if (inside && line.starts_with("  ")) rows.push_back(rowOf(line));
+    inside |= line == "Subcommands:";
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string optionsTable(std::string_view of) {
-  const std::vector<Row> shared = common(common(rowsOf("gen"), rowsOf("graph")), rowsOf("dump"));
+  const std::vector<Row> shared = sharedRows();
   const std::vector<Row> generation = without(common(rowsOf("gen"), rowsOf("plan")), shared);
-  std::vector<Row> rows;
-  if (of == "shared")
-    rows = shared;
-  else if (of == "generation")
-    rows = generation;
-  else
-    rows = without(without(rowsOf(std::string(of)), shared), generation);
+  const std::vector<Row> all = rowsOf(of == "shared" || of == "generation" ? "gen" : std::string(of));
+  // What stands in the tables above.
+  std::vector<Row> known;
+  if (of != "gen" && of != "plan") known = common(all, generation);
+  if (!takesShared(all)) {
+    const std::vector<Row> some = common(all, shared);
+    known.insert(known.end(), some.begin(), some.end());
+  }
+  for (const Row& row : without(without(rowsOf("eval"), shared), known)) {
+    const bool trial = of != "eval" && row.flags.starts_with("--") && row.flags != "--material";
+    if (trial && std::find(all.begin(), all.end(), row) != all.end()) known.push_back(row);
+  }
+  std::vector<Row> rows = without(without(without(all, shared), generation), known);
+  if (of == "shared") rows = shared;
+  if (of == "generation") rows = generation;
+  if (rows.empty()) ADD_FAILURE() << of << " has no options of its own";
   std::string out = "| option | argument | meaning |\n|---|---|---|\n";
   for (const Row& row : rows) {
     out += fmt::format("| `{}` | {} | {} |\n", row.flags, row.argument, row.meaning);
   }
-  if (rows.empty()) ADD_FAILURE() << of << " has no options of its own";
-  return out;
+  if (known.empty() || of == "shared" || of == "generation") return out;
+  std::string flags;
+  for (const Row& row : known) flags += (flags.empty() ? "`" : "`, `") + row.flags;
+  return out + fmt::format("| {}` | | as above |\n", flags);
+}
+
+std::string takersLine() {
+  std::vector<std::string> verbs;
+  for (const Row& row : verbRows()) {
+    if (takesShared(rowsOf(row.flags))) verbs.push_back(fmt::format("`{}`", row.flags));
+  }
+  if (verbs.size() < 2) return {};
+  const std::string last = verbs.back();
+  verbs.pop_back();
+  return fmt::format("Every verb that looks at a material takes them: {} and {}.\n", fmt::join(verbs, ", "),
+                     last);
 }
 
 std::string verbsTable() {
   std::string out = "| verb | what it gives |\n|---|---|\n";
-  bool inside = false;
-  for (const std::string& line : split(helpOf(""), "\n")) {
-    if (inside && line.starts_with("  ")) {
-      const Row row = rowOf(line);
-      out += fmt::format("| [`{0}`](#{0}) | {1} |\n", row.flags,
-                         row.argument.substr(row.argument.find_first_not_of(' ')));
-    }
-    inside |= line == "Subcommands:";
+  for (const Row& row : verbRows()) {
+    out += fmt::format("| [`{0}`](#{0}) | {1} |\n", row.flags,
+                       row.argument.substr(row.argument.find_first_not_of(' ')));
   }
   return out;
 }

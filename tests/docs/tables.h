@@ -36,5 +36,6 @@ std::string sourceLines(
 
 std::string optionsTable(std::string_view of);  ///< a verb, "shared" or "generation"
 std::string verbsTable();
+std::string takersLine();  ///< the verbs that take all options that several share
 
 }  // namespace lacquer::test

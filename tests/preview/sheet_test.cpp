@@ -248,6 +248,8 @@ TEST(Sheet, SaysWhatIsWrong) {
   EXPECT_EQ(code(unknown, {file}), "unknown-setting");
   unknown.compare = {"float", ""};
   EXPECT_EQ(code(unknown, {file}), "unknown-setting");
+  unknown.compare = {"as-given", "baked+vertex:base.indirect"};
+  EXPECT_EQ(code(unknown, {file}), "no-triangles");
   EXPECT_EQ(code(small(), {file}, {"Nothing"}), "no-such-material");
   EXPECT_EQ(code(small(), {(scratch() / "nowhere.gltf").string()}), "file-unreadable");
   EXPECT_EQ(code(small(), {write("empty.gltf", fileOf(json::array()))}), "nothing-to-show");

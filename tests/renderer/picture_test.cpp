@@ -156,6 +156,35 @@ fs::path changed(const char* name, const std::function<void(Json&)>& change) {
   return path;
 }
 
+/// The model with a node that says whether it is seen, and at the beginning of its animation is not.
+fs::path hiding(const char* name, bool visible, bool animated) {
+  return changed(name, [&](Json& j) {
+    size_t node = 0;
+    while (!j["nodes"][node].contains("mesh")) ++node;
+    j["nodes"][node]["extensions"]["KHR_node_visibility"] = {{"visible", visible}};
+    if (!animated) return;
+    Json& animation = j["animations"][0];
+    const Json times = animation["samplers"][0]["input"];  // 0 is the first
+    const std::string pointer = "/nodes/" + std::to_string(node) + "/extensions/KHR_node_visibility/visible";
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size()},
+         {"target",
+          {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+    animation["samplers"].push_back({{"input", times}, {"output", times}, {"interpolation", "STEP"}});
+  });
+}
+
+TEST_F(Pictures, WhatIsHiddenIsNotDrawn) {
+  const Picture still = draw(kStillLife, with({}));
+  EXPECT_EQ(differing(still, draw(hiding("visible.glb", true, false), with({})), 0), 0U);
+  const Picture hidden = draw(hiding("hidden.glb", false, false), with({}));
+  EXPECT_GT(differing(still, hidden, 0.1F), 100U);
+  const fs::path blinks = hiding("blinks.glb", true, true);
+  EXPECT_EQ(differing(hidden, draw(blinks, with({})), 0), 0U);
+  const std::vector<std::string> later = with({"--time", "3"});
+  EXPECT_EQ(differing(draw(kStillLife, later), draw(blinks, later), 0), 0U);
+}
+
 Ran drawn(const fs::path& path) {
   return run({path.string(), "-o", (place() / "broken.png").string(), "--size", "64x36", "--samples", "1",
               "--cache", cacheFolder()});

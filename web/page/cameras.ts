@@ -8,10 +8,22 @@ export class Cameras {
     byId('camera').addEventListener('change', () => {
       this.follow();
       page.viewport.redraw();
+      page.files.changed();
     });
   }
+  /** Its number among the file's; empty where the hand turns the picture. */
+  get value(): string {
+    return byId<HTMLSelectElement>('camera').value;
+  }
+  choose(value: string): void {
+    const choice = byId<HTMLSelectElement>('camera');
+    if (![...choice.options].some((option) => option.value === value)) return;
+    choice.value = value;
+    this.follow();
+    this.page.viewport.redraw();
+  }
   private get chosen(): Camera | undefined {
-    const { value } = byId<HTMLSelectElement>('camera');
+    const { value } = this;
     return value === '' ? undefined : this.page.document?.cameras.all[Number(value)];
   }
 
@@ -40,5 +52,6 @@ export class Cameras {
     viewport.middle = middle;
     byId<HTMLSelectElement>('camera').value = '';
     viewport.camera = null;
+    this.page.files.changed();
   }
 }

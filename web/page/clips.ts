@@ -4,7 +4,7 @@ import { isCount, isNear, item, list, once } from '../src/json';
 
 type Mode = 'LINEAR' | 'STEP' | 'CUBICSPLINE';
 /** What can be moved of a node. */
-export type Part = 'translation' | 'rotation' | 'scale' | 'weights';
+export type Part = 'translation' | 'rotation' | 'scale' | 'weights' | 'visible';
 export const kParts = new Map<string, number>([['translation', 3], ['rotation', 4], ['scale', 3]]);
 
 interface Curve {
@@ -141,6 +141,8 @@ export class ClipReader {
         if (!item(lights ? extensions?.KHR_lights_punctual?.lights : cameras, Number(index))) return `${pointer} leads to no ${lights ? 'lamp' : 'camera'}`;
         return { property, size: name === 'color' ? 3 : 1 };
       }
+      const shown = /^\/nodes\/(\d+)\/extensions\/KHR_node_visibility\/visible$/.exec(pointer);
+      if (shown) return item(this.from.file.json.nodes, Number(shown[1])) ? { node: Number(shown[1]), part: 'visible' } : `there is no node ${shown[1]}`;
       const part = /^\/nodes\/(\d+)\/(translation|rotation|scale|weights)$/.exec(pointer);
       if (!part) return null;
       node = Number(part[1]);
@@ -159,13 +161,15 @@ export class ClipReader {
     const sampler = item(animation.samplers, channel.sampler);
     if (!sampler) return `there is no sampler ${JSON.stringify(channel.sampler)}`;
     const mode = sampler.interpolation ?? 'LINEAR';
+    const visible = 'part' in target && target.part === 'visible';
+    if (visible && mode !== 'STEP') return `what is seen or not has the interpolation STEP, and no ${JSON.stringify(mode)}`;
     if (mode !== 'LINEAR' && mode !== 'STEP' && mode !== 'CUBICSPLINE') return `the interpolation ${JSON.stringify(mode)} is none: it is LINEAR, STEP or CUBICSPLINE`;
     const times = once(this.times, sampler.input, () => this.timesOf(sampler.input));
     if (!times) return `the sampler's input, accessor ${JSON.stringify(sampler.input)}, cannot be read as times that go on from 0`;
     const read = once(this.values, sampler.output, () => this.valuesOf(sampler.output));
     if (!read) return `the sampler's output, accessor ${JSON.stringify(sampler.output)}, cannot be read as numbers`;
     const { data: values } = read;
-    const size = 'pointer' in target ? read.size : 'property' in target ? target.size : target.part === 'weights' ? this.weights(target.node) : kParts.get(target.part)!;
+    const size = visible ? 1 : 'pointer' in target ? read.size : 'property' in target ? target.size : target.part === 'weights' ? this.weights(target.node) : kParts.get(target.part)!;
     const needed = times.length * size * (mode === 'CUBICSPLINE' ? 3 : 1);
     if (values.length !== needed || ('part' in target && target.part !== 'weights' && read.size !== size))
       return `the sampler's output has ${values.length} numbers, ${read.size} in each element: ${times.length} times by ${mode} need ${needed}`;

@@ -3,6 +3,7 @@ import { zipSync, type Zippable } from 'fflate';
 import { LacquerError } from '../src/index';
 import { byId, download, h } from './dom';
 import type { Page } from './main';
+import type { Described, Stage } from './printed';
 
 const kWords =
   /(\/\/[^\n]*)|(#[^\n]*)|\b(const|in|out|inout|uniform|layout|precision|highp|struct|if|else|for|return|void|cbuffer|register|static|let|fn|var|switch|case)\b|\b(float[1-4]?(?:x[34])?|vec[234]|mat[34]|int|uint|bool|sampler\w*|Texture\w+|SamplerState|double)\b|(\b\d[\w.]*(?:e[+-]?\d+)?\b)/g;
@@ -68,7 +69,6 @@ export function hexOf(words: Uint32Array): string {
 const kEndings: Record<string, string> = { essl: 'glsl', glsl: 'glsl', 'glsl-gl': 'glsl', hlsl: 'hlsl', wgsl: 'wgsl', spirv: 'spv' };
 const kWhole: Record<string, string> = { cpp: 'h', js: 'js' }; // of both stages
 
-type Stage = 'vertex' | 'fragment';
 const endingOf = (target: string, stage: Stage): string =>
   kWhole[target] ?? `${stage === 'fragment' ? 'frag' : 'vert'}.${kEndings[target] ?? 'txt'}`;
 
@@ -76,7 +76,7 @@ const endingOf = (target: string, stage: Stage): string =>
 function targetsOf(page: Page): string[] {
   return [...byId<HTMLSelectElement>('target').options].map(({ value }) => value).filter((target) => {
     try {
-      return page.described(target).id !== '';
+      return page.printed.described(target).id !== '';
     } catch (error) {
       if (!(error instanceof LacquerError)) throw error;
       return false;
@@ -85,11 +85,11 @@ function targetsOf(page: Page): string[] {
 }
 
 /** Targets' texts in the folders of `lacquer gen`, what is bound to them, and the graph; null where the material has an error. */
-function folderOf(page: Page, targets: string[], { id, interface: about, graph, block }: ReturnType<Page['described']>): Uint8Array<ArrayBuffer> | null {
+function folderOf(page: Page, targets: string[], { id, interface: about, graph, block }: Described): Uint8Array<ArrayBuffer> | null {
   const files: Zippable = {};
   for (const target of targets) {
     for (const stage of ['vertex', 'fragment'] as const) {
-      const bytes = page.bytes(target, stage);
+      const bytes = page.printed.bytes(target, stage);
       if (!bytes) return null;
       if (bytes.length > 0) files[`${target}/${id}.${endingOf(target, stage)}`] = bytes;
     }
@@ -114,12 +114,12 @@ export function connectCode(page: Page): void {
   byId('copy-code').addEventListener('click', () => void copy(byId('code').textContent ?? '').then((done) => say(done ? 'copied' : 'the browser lets nothing be copied')));
   byId('download-code').addEventListener('click', () => {
     const { target, stage } = chosen();
-    const bytes = page.bytes(target, stage);
-    if (bytes) download(`${page.described(target).id}.${endingOf(target, stage)}`, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
+    const bytes = page.printed.bytes(target, stage);
+    if (bytes) download(`${page.printed.described(target).id}.${endingOf(target, stage)}`, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
   });
   byId('download-folder').addEventListener('click', () => {
     const targets = targetsOf(page);
-    const about = targets.length > 0 ? page.described(targets[0]) : page.describedOrSaid();
+    const about = targets.length > 0 ? page.printed.described(targets[0]) : page.printed.describedOrSaid();
     const bytes = about && folderOf(page, targets, about);
     if (!bytes) return;
     download(`${about.id}.zip`, bytes, 'application/zip');

@@ -73,7 +73,7 @@ export class Document {
     }
     scene.free();
     this.file = openGltf(input.name, input.bytes, input.resources);
-    this.drawables = geometry(this.file);
+    this.drawables = geometry(this.file, { hidden: true });
     this.moves = new Moves(this.file, this.drawables);
     this.lights = new FileLights(this.file);
     this.cameras = new FileCameras(this.file);

@@ -8,6 +8,8 @@ export interface Draft extends Omit<Input, 'resources'> {
   /** Milliseconds since 1970. */
   time: number;
   material: number;
+  /** As Cameras has it; drafts of earlier pages have none. */
+  camera?: string;
 }
 
 /** Larger files are not kept: a message says so. */

@@ -21,6 +21,7 @@ export class Files {
   private timer = 0;
   /** The state of the document that the draft has; -1 for none. */
   private kept = -1;
+  private keptCamera = '';
   private writing: Promise<void> = Promise.resolve();
   /** A file that came with the page, and what says in the list of files that it is shown. */
   held: (name: string) => { input: Input; shown: () => void } | null = () => null;
@@ -208,15 +209,17 @@ export class Files {
   }
   private async keep(): Promise<void> {
     const { document: of } = this.page;
-    if (!of || !this.drafts || of.state === this.kept) return;
+    const { value: camera } = this.page.cameras;
+    if (!of || !this.drafts || (of.state === this.kept && camera === this.keptCamera)) return;
     if (!of.isEdited) return this.forget();
     const { state, material, file: { name, resources: all } } = of;
     const resources = [...all].filter(([uri]) => !uri.startsWith('data:'));
     const bytes = of.file.bytes.length > kMostBytes ? null : of.export().bytes;
     if (!bytes || resources.reduce((sum, [, each]) => sum + each.length, bytes.length) > kMostBytes) return this.page.note(`${name} is too large for a draft: export it to keep its edits`);
     try {
-      await this.drafts.keep({ name, bytes, resources, material, time: Date.now() });
+      await this.drafts.keep({ name, bytes, resources, material, camera, time: Date.now() });
       this.kept = state;
+      this.keptCamera = camera;
     } catch (error) {
       this.page.note(`no draft can be kept here: ${error instanceof Error ? error.message : String(error)}`);
     }
@@ -252,6 +255,7 @@ export class Files {
     const { page } = this;
     page.document!.unsaved();
     if (draft.material > 0) page.choose(draft.material);
+    page.cameras.choose(draft.camera ?? '');
     this.changed();
     await this.keep();
     await this.drafts?.remove(draft.id);

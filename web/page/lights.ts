@@ -37,7 +37,7 @@ export function element({ position, positional, radiance, range, direction, spot
   ];
 }
 
-/** Those that nodes of the default scene refer to, the first sixteen. */
+/** Those that nodes of the default scene refer to; of what is seen the first sixteen. */
 export class FileLights {
   private readonly lamps: { node: number; index: number; of: any }[] = [];
 
@@ -46,7 +46,7 @@ export class FileLights {
     eachNode(file, (node, _, index) => {
       const light = node.extensions?.KHR_lights_punctual?.light;
       const of = item(declared, light);
-      if (of && this.lamps.length < kMostLights) this.lamps.push({ node: index, index: light, of });
+      if (of) this.lamps.push({ node: index, index: light, of });
     });
   }
   get count(): number {
@@ -55,7 +55,7 @@ export class FileLights {
 
   /** As they are now, and where their nodes are. */
   at(moves: Moves): Light[] {
-    return this.lamps.flatMap(({ node, index, of }) => {
+    return this.lamps.filter(({ node }) => !moves.hides(node)).slice(0, kMostLights).flatMap(({ node, index, of }) => {
       const world = moves.world(node);
       if (!world?.every(isNear)) return [];
       const now = (name: string, otherwise: number, said: unknown = of[name]) => {

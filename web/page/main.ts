@@ -3,7 +3,7 @@
 import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
 import { Around } from './around';
 import { Cameras } from './cameras';
-import { connectCode, hexOf, selectTerm, showCode } from './code';
+import { connectCode, selectTerm, showCode } from './code';
 import { fillOthers, fillVariants, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
@@ -17,11 +17,10 @@ import { GpuPainter } from './gpu';
 import { GraphPane } from './graph';
 import { kOwnNodes, NodeText } from './nodetext';
 import { Player } from './player';
+import { kOffered, Printed, type Stage } from './printed';
 import { Properties } from './properties';
 import { kRates, ratesOf } from './rates';
 import { Viewport, type Look } from './viewport';
-
-const kTargets = ['essl', 'wgsl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp', 'js'];
 
 /** Milliseconds of work on other materials between two frames. */
 const kSlice = 8;
@@ -47,7 +46,7 @@ export class Page {
   readonly around: Around;
   readonly cameras: Cameras;
   private readonly player: Player;
-  private readonly generated: Generated;
+  readonly printed: Printed;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
@@ -78,7 +77,7 @@ export class Page {
     this.graph = new GraphPane(this);
     byId('version').textContent = lacquer.version;
     this.fillSelects();
-    this.generated = new Generated(this.nodes, () => this.showText());
+    this.printed = new Printed(this, new Generated(this.nodes, () => this.showText()));
     this.connectControls();
     this.files = new Files(this);
     this.around = new Around(this);
@@ -385,55 +384,13 @@ export class Page {
     return JSON.stringify([this.of!.file.name, this.of!.material, byId('id').textContent, rest, kinds]);
   }
 
-  private textOptions(target: string): Options {
-    return { ...this.generated.options(this.options()), targets: [target] };
-  }
-  /** The text of the chosen target and stage, as `lacquer gen` writes it. */
-  text(target: string, stage: 'vertex' | 'fragment'): string {
-    return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader) =>
-      target === 'spirv' ? hexOf(shader.spirv(stage)) : shader.text(target, stage),
-    );
-  }
-
-  /** The file that `lacquer gen` writes of it; null where the material has an error. */
-  bytes(target: string, stage: 'vertex' | 'fragment'): Uint8Array<ArrayBuffer> | null {
-    try {
-      return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader) =>
-        target === 'spirv' ? new Uint8Array(shader.spirv(stage).slice().buffer) : new TextEncoder().encode(shader.text(target, stage)),
-      );
-    } catch (error) {
-      this.fail(error);
-      return null;
-    }
-  }
-
-  /** What an application needs beside the texts: the manifest's entry, the graph, the bytes of the material's block. */
-  described(target: string): { id: string; interface: object; graph: string; block: Uint8Array<ArrayBuffer> } {
-    return withShader(this.lacquer, this.of!, this.textOptions(target), [], (shader, graph) => ({
-      id: shader.id,
-      interface: shader.interface,
-      graph: graph.toText(),
-      block: new Uint8Array(shader.packGraph(graph)),
-    }));
-  }
-
-  /** The same; null, and a message, where the material has an error. */
-  describedOrSaid(): ReturnType<Page['described']> | null {
-    try {
-      return this.described(byId<HTMLSelectElement>('target').value);
-    } catch (error) {
-      this.fail(error);
-      return null;
-    }
-  }
-
   private showText(): void {
     const target = byId<HTMLSelectElement>('target').value;
-    const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
+    const stage = byId<HTMLSelectElement>('stage').value as Stage;
     const code = byId('code');
-    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${JSON.stringify(this.textOptions(target))} ${stage}`)) return;
+    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${JSON.stringify(this.printed.options(target))} ${stage}`)) return;
     try {
-      const text = this.text(target, stage);
+      const text = this.printed.text(target, stage);
       showCode(code, text, (term) => this.select(term, 'code'));
       byId('size').textContent = target === 'spirv' ? `${text.split(/\s+/).length} words` : `${new TextEncoder().encode(text).length} bytes`;
       if (this.selected) this.showTerm(true);
@@ -471,24 +428,12 @@ export class Page {
     const shaders: [string, string][] = [['left', byId('id').textContent ?? '']];
     if (this.otherId) shaders.push(['right', this.otherId]);
     byId('measured').replaceChildren(costTable(this.figures.costs, shaders));
-    byId('sizes').textContent = this.sizes();
+    byId('sizes').textContent = this.printed.sizes();
     const choose = (word: string) => {
       byId<HTMLSelectElement>('compare').value = `simplify:${word}`;
       this.compile();
     };
     byId('errors-of-terms').replaceChildren(errorTable(this.graphJson!, this.figures.errors, choose));
-  }
-  /** Of the fragment stage, target by target. */
-  private sizes(): string {
-    try {
-      return withShader(this.lacquer, this.of!, { ...this.options(), targets: kTargets }, [], (shader) => {
-        const sizeOf = (target: string) => (target === 'spirv' ? 4 * shader.spirv('fragment').length : shader.text(target, 'fragment').length);
-        return kTargets.map((target) => `${target} ${sizeOf(target)}`).join(', ');
-      });
-    } catch (error) {
-      if (!(error instanceof LacquerError)) throw error;
-      return '';
-    }
   }
 
   private showSkipped(): void {
@@ -609,7 +554,7 @@ export class Page {
     const option = ({ name, doc }: { name: string; doc: string }) => h('option', { value: name, title: doc }, name);
     byId('profile').replaceChildren(...profiles.map(option));
     byId<HTMLSelectElement>('profile').value = this.figures.options.profile ?? profiles[0].name;
-    byId('target').replaceChildren(...kTargets.map((name) => h('option', {}, name)));
+    byId('target').replaceChildren(...kOffered.map((name) => h('option', {}, name)));
   }
 
   /** It stands in another light. */

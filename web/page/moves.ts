@@ -6,6 +6,7 @@ import { isCount, isNear, item, list, numbersOf, once, rootsOf } from '../src/js
 import { compose, identity, mirrors, multiply, normalMatrix } from '../src/math';
 import { Bent, sizesOf, type Skin, type Target } from './bend';
 import { ClipReader, valueAt, type Clip, type Part } from './clips';
+import { Visibility } from './visibility';
 
 /** Of a file, so that a picture takes no seconds: influences of joints and changes by morph targets, each of one vertex. What has
  * more of them is drawn as it rests. */
@@ -55,6 +56,9 @@ export class Moves {
   private readonly weighs = new Map<unknown, boolean>();
   private readonly joints = new Map<Skin, Map<Drawable['attributes'], [Numbers, Numbers][]>>();
   private readonly from: Reader;
+  private readonly visibility: Visibility;
+  /** A clip has said of nodes whether they are seen. */
+  private flashed = false;
   private influences = kMostInfluences;
   private changes = kMostChanges;
 
@@ -77,6 +81,7 @@ export class Moves {
       } else once(this.carried, node, () => []).push(drawable);
     }
     for (const { bent } of this.bendings) bent.bend(null, true);
+    this.visibility = new Visibility(list(this.json.nodes), this.order, (node) => this.places[node].parent, drawables);
   }
 
   private get json(): any {
@@ -212,6 +217,7 @@ export class Moves {
     const dirty = new Set(this.touched);
     for (const index of this.touched) if (this.places[index]) this.rest(this.places[index]);
     const weights = new Map<number, number[]>();
+    const seen = new Map<number, boolean>();
     this.touched = new Set();
     for (const channel of clip?.channels ?? []) {
       const { node, part } = channel;
@@ -220,12 +226,18 @@ export class Moves {
         weights.set(node, value);
         continue;
       }
+      if (part === 'visible') {
+        seen.set(node, value[0] !== 0);
+        continue;
+      }
       const now = this.places[node]?.now;
       if (!now) continue;
-      now[part as Exclude<Part, 'weights'>] = value;
+      now[part as Exclude<Part, 'weights' | 'visible'>] = value;
       this.touched.add(node);
       dirty.add(node);
     }
+    if (seen.size > 0 || this.flashed) this.visibility.set(seen);
+    this.flashed = seen.size > 0;
     this.moved.clear();
     for (const channel of clip?.properties ?? []) this.moved.set(channel.property, valueAt(channel, seconds, false));
     for (const index of dirty) {
@@ -238,6 +250,10 @@ export class Moves {
   /** Where a node is in the world. */
   world(node: number): Mat4 | undefined {
     return this.places[node]?.world;
+  }
+  /** Whether it, or a node above it, is not to be seen now. */
+  hides(node: number): boolean {
+    return this.visibility.hides(node);
   }
   private rest({ now, rest }: Place): void {
     if (now && rest) Object.assign(now, rest);

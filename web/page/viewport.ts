@@ -228,7 +228,7 @@ export class Viewport {
     const canvas = this.gpu?.canvas ?? this.canvas;
     const rays = this.rays(canvas.clientWidth / Math.max(canvas.clientHeight, 1));
     const along = [0, 1, 2].map((i) => x * rays[i] + y * rays[3 + i] + rays[6 + i]) as Vec3;
-    return firstMet(this.meshes.map(({ drawable }) => drawable), this.eye(), along)?.material;
+    return firstMet(this.meshes.map(({ drawable }) => drawable).filter(({ hidden }) => !hidden), this.eye(), along)?.material;
   }
 
   /** Loads the file's textures that a look has, then draws again. */
@@ -385,6 +385,7 @@ export class Viewport {
     for (const pass of passes) {
       const found: { mesh: Mesh; look: Look }[] = [];
       for (const mesh of own ? this.meshes : [this.ballMesh]) {
+        if (own && mesh.drawable.hidden) continue;
         const material = own ? mesh.drawable.material : this.shown;
         const look = instead && material === this.shown ? instead : this.looks.get(material);
         if (look?.pass === pass) found.push({ mesh, look });

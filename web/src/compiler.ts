@@ -9,7 +9,8 @@ export type { Source };
 /** What lacquer-compiler.wasm has not. */
 function beyond(call: string): never {
   const message = `the compiler's module has no ${call.replace(/^lacquer_/, '')}()`;
-  const help = '`load()` of the package\'s main entry, lacquer.wasm, has it';
+  const instead = call === 'lacquer_graph_edit' ? '; numbers are set by setParameter() and setRange()' : '';
+  const help = `\`load()\` of the package's main entry, lacquer.wasm, has it${instead}`;
   const text = `error: ${message} [not-in-compiler]\n  help: ${help}`;
   throw new LacquerError([{ level: 'error', code: 'not-in-compiler', file: '', pointer: '', line: 0, column: 0, message, help, text }]);
 }

@@ -35,6 +35,8 @@ export interface Drawable {
   normal: Mat4;
   /** The model swaps front and back faces. */
   mirrored?: boolean;
+  /** Its node, or one above, is not to be seen (KHR_node_visibility). */
+  hidden?: boolean;
   /** The numbers of its node, and of the primitive in the node's mesh. */
   node?: number;
   primitive?: number;
@@ -309,18 +311,21 @@ function placesOf(from: Reader, node: any): (Mat4 | undefined)[] | null {
   return Array.from({ length: count }, (_, i) => compose(at(t, i, [0, 0, 0]), at(r, i, [0, 0, 0, 1]), at(s, i, [1, 1, 1])));
 }
 
-/** Calls with every node of the default scene, where it is in the world, and its number. */
-export function eachNode(file: GltfFile, use: (node: any, world: Mat4, index: number) => void): void {
+/** Whether a node says that it is not seen, and all below it (KHR_node_visibility). */
+export const hides = (node: any): boolean => node?.extensions?.KHR_node_visibility?.visible === false;
+
+/** Calls with every node of the default scene, where it is in the world, its number, and whether it is not to be seen. */
+export function eachNode(file: GltfFile, use: (node: any, world: Mat4, index: number, hidden: boolean) => void): void {
   const { nodes, scenes, scene = 0 } = file.json;
   const seen = new Set<number>(); // a node has one parent, and a broken file may go in circles
-  const open: [number, Mat4][] = []; // a chain of nodes may be longer than the stack of calls is deep
-  const push = (indices: any[], parent: Mat4) => {
-    for (let i = indices.length; i-- > 0; ) open.push([indices[i], parent]); // the last is taken first
+  const open: [number, Mat4, boolean][] = []; // a chain of nodes may be longer than the stack of calls is deep
+  const push = (indices: any[], parent: Mat4, hidden: boolean) => {
+    for (let i = indices.length; i-- > 0; ) open.push([indices[i], parent, hidden]); // the last is taken first
   };
   const roots = item(scenes, scene)?.nodes;
-  push(roots === undefined ? rootsOf(list(nodes)) : list(roots), identity());
+  push(roots === undefined ? rootsOf(list(nodes)) : list(roots), identity(), false);
   for (let next = open.pop(); next; next = open.pop()) {
-    const [index, parent] = next;
+    const [index, parent, above] = next;
     const node = item(nodes, index);
     if (!node || seen.has(index)) continue;
     seen.add(index);
@@ -330,20 +335,21 @@ export function eachNode(file: GltfFile, use: (node: any, world: Mat4, index: nu
       : compose(numbersOf(node.translation, 3) ?? [0, 0, 0], numbersOf(node.rotation, 4) ?? [0, 0, 0, 1], numbersOf(node.scale, 3) ?? [1, 1, 1]);
     const world = multiply(parent, local);
     if (!world.every(isNear)) continue; // it would take what is drawn beside it out of sight
-    use(node, world, index);
-    push(list(node.children), world);
+    const hidden = above || hides(node);
+    use(node, world, index, hidden);
+    push(list(node.children), world, hidden);
   }
 }
 
-/** Every triangle mesh of the default scene, in world space. */
-export function geometry(file: GltfFile): Drawable[] {
+/** Every triangle mesh of the default scene, in world space; of nodes that are not to be seen only when `hidden` asks for them. */
+export function geometry(file: GltfFile, { hidden = false } = {}): Drawable[] {
   const found: Drawable[] = [];
   const from = new Reader(file);
   const made = new Map<any, Shape[]>();
-  eachNode(file, (node, model, index) => {
+  eachNode(file, (node, model, index, unseen) => {
     const mesh = item(file.json.meshes, node.mesh);
     const room = kMostDrawables - found.length;
-    if (!mesh || room === 0) return;
+    if (!mesh || room === 0 || (unseen && !hidden)) return;
     // What is left out of a mesh is not come upon again at its other nodes.
     const shapes = once(made, mesh, () => list(mesh.primitives).map((of, i) => shapeOf(from, of, i)).filter((shape) => shape !== null));
     if (shapes.length === 0) return;
@@ -351,18 +357,19 @@ export function geometry(file: GltfFile): Drawable[] {
       const place = instance ? multiply(model, instance) : model;
       if (!place.every(isNear)) continue;
       const normal = normalMatrix(place);
-      for (const shape of shapes.slice(0, kMostDrawables - found.length)) found.push({ model: place, normal, node: index, ...(instance && { instance }), ...shape });
+      for (const shape of shapes.slice(0, kMostDrawables - found.length)) found.push({ model: place, normal, node: index, ...(unseen && { hidden: true }), ...(instance && { instance }), ...shape });
     }
   });
   return found;
 }
 
-/** The middle and the radius of what is drawn. */
+/** The middle and the radius of what is seen of it; where nothing is, of all. */
 export function bounds(drawables: Drawable[]): { middle: Vec3; radius: number } {
+  const seen = drawables.filter(({ hidden }) => !hidden);
   const low: Vec3 = [Infinity, Infinity, Infinity];
   const high: Vec3 = [-Infinity, -Infinity, -Infinity];
   const boxes = new Map<Float32Array, Vec3[]>();
-  for (const { attributes, model } of drawables) {
+  for (const { attributes, model } of seen.length > 0 ? seen : drawables) {
     const positions = attributes.get('POSITION')!.data;
     for (const corner of once(boxes, positions, () => cornersOf(positions))) {
       point(model, corner).forEach((x, k) => {

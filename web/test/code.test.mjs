@@ -59,6 +59,18 @@ test('the text is made with the options of `lacquer gen` that are chosen; the pi
       for (const control of Object.keys(chosen)) await page.selectOption(`#${control}`, '');
     }
     assert.equal((await saved())[0], `${id}.frag.glsl`);
+    const fixed = join(folder, 'fixed');
+    lacquer('gen', 'examples/clearcoat.gltf', '-o', fixed, '-q', '--target', 'essl', '--lights', 'directional:1,point:4');
+    assert.ok(await page.isHidden('#gen-counts'));
+    await page.selectOption('#gen-lights', 'fixed');
+    await page.fill('#gen-count-point', '4');
+    const [counted, of_counts] = await saved();
+    assert.equal(of_counts, readFileSync(join(fixed, 'essl', counted), 'utf8'));
+    // MSL is the program's.
+    await page.selectOption('#target', 'msl');
+    assert.match(await page.textContent('#code'), /\n\nlacquer gen clearcoat\.gltf --material \S+ --target msl -o shaders --profile khr --lights directional:1,point:4\n?$/);
+    await page.selectOption('#target', 'essl');
+    await page.selectOption('#gen-lights', '');
     // What cannot be together is said in the place of the text.
     await page.selectOption('#gen-binding', 'bindless');
     assert.match(await page.textContent('#code'), /bindless/);
@@ -76,7 +88,8 @@ test('the text is made with the options of `lacquer gen` that are chosen; the pi
 
 test('all targets are saved as a folder, as `lacquer gen` writes it', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
-    const targets = await page.evaluate(() => [...document.getElementById('target').options].map(({ value }) => value));
+    const all = await page.evaluate(() => [...document.getElementById('target').options].map(({ value }) => value));
+    const targets = all.filter((target) => target !== 'msl');
     const out = join(folder, 'folder');
     lacquer('gen', 'examples/clearcoat.gltf', '-o', out, '-q', '--no-validate', '--target', targets.join());
     const id = await page.textContent('#id');

@@ -79,7 +79,7 @@ test('what it has not throws, and says which entry has it', () => {
     preview: () => graph.preview(64),
     materialx: () => scene.toMaterialX(),
     gltf: () => scene.toGltf(),
-    edit: () => graph.edit({ edit: 'remove', node: 'a' }),
+    edit: () => graph.edit({ do: 'set_value', parameter: 'coat_factor', value: 0.5 }),
     add_node: () => graph.addNode('a', 'multiply'),
     environment_filter: () => compiler.environment(new Uint8Array(4), 'a.hdr'),
     check_nodes: () => compiler.checkNodes({}),
@@ -89,6 +89,7 @@ test('what it has not throws, and says which entry has it', () => {
       assert.ok(error instanceof LacquerError, `${name}: ${error}`);
       assert.equal(error.messages[0].code, 'not-in-compiler', name);
       assert.match(error.message, new RegExp(`${name}\\(\\)[^]*main entry`));
+      assert.equal(error.message.includes('setParameter()'), name === 'edit');
       return true;
     }, name);
   }

@@ -63,6 +63,29 @@ test('a draft of what was edited is kept and offered after a reload; it goes whe
     assert.ok(await page.isHidden('#drafts'));
   }));
 
+test('the camera that is chosen is kept in the draft, until the hand takes over', () =>
+  open([], async (page) => {
+    const json = JSON.parse(read('examples/clearcoat.gltf'));
+    const eye = (x) => json.nodes.push({ camera: 0, translation: [x, 0, 4] }) - 1;
+    json.cameras = [{ type: 'perspective', perspective: { yfov: 0.8, znear: 0.1 } }];
+    json.nodes ??= [];
+    json.scenes ??= [{ nodes: json.nodes.map((_, i) => i) }];
+    json.scenes[json.scene ?? 0].nodes.push(eye(0), eye(1));
+    await drop(page, [['seen.gltf', Buffer.from(JSON.stringify(json))]]);
+    await set(page, kRoughness, 0.125);
+    await untilKept(page, 1);
+    const keptCamera = (value) => page.waitForFunction((wanted) => window.lacquerPage.files.keptCamera === wanted, value);
+    await page.selectOption('#camera', '1');
+    await keptCamera('1');
+    await reload(page);
+    await page.click('#drafts >> text=Open the draft');
+    await page.waitForFunction(() => document.querySelectorAll('#drafts > div').length === 0);
+    assert.equal(await page.inputValue('#camera'), '1');
+    assert.ok(await page.evaluate(() => window.lacquerPage.viewport.camera !== null));
+    await page.selectOption('#camera', '');
+    await keptCamera('');
+  }));
+
 test('a file that takes the place of edits asks; one that cannot be read does not, and its message goes with the next edit', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
     await set(page, kRoughness, 0.125);

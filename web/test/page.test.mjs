@@ -31,6 +31,18 @@ test('a slider at its neutral end says that the term has left, and brings it bac
     assert.equal(await page.textContent('#id'), before);
   }));
 
+test('its header is one line, whatever the names', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const name = 'a material that somebody has given a name of many words';
+    await drop(page, [['a_file_that_has_a_name_of_many_words_too.gltf', Buffer.from(JSON.stringify({ asset: { version: '2.0' }, materials: [{ name }] }))]]);
+    const { height, wide, room } = await page.evaluate(() => {
+      const header = document.querySelector('header');
+      return { height: header.clientHeight, wide: header.scrollWidth, room: header.clientWidth };
+    });
+    assert.ok(height < 50, `${height} pixels high`);
+    assert.ok(wide <= room, `${wide} of ${room} pixels`);
+  }));
+
 test('drop, edit, undo, export and reload', () =>
   open([], async (page) => {
     await drop(page, [['sphere.gltf', read('examples/core.gltf')]]);

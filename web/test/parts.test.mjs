@@ -20,6 +20,7 @@ const { makeEnvironment, Turned } = await part('environment');
 const { element, FileLights } = await part('lights');
 const { Moves } = await part('moves');
 const { halves } = await part('gpu');
+const { viewOf } = await part('editor/view');
 const { frameBlocks } = await part('frame');
 const { kBlocks } = await part('viewport');
 const { bounds, eachNode, geometry, openGltf } = await part('gltf', 'web/src');
@@ -160,6 +161,47 @@ test("a file's own lamps are the elements that docs/bindings.md describes", () =
   close(spot, [0, 0, 0, 1, 1, 1, 1, 0, 0, 0, -1, scale, -Math.cos(0.6) * scale, 0, 0, 0], 1e-6);
 });
 
+test('what is not to be seen is not drawn, nor are its lamps lit, nor what is below it; a clip may change that', () => {
+  const hide = (visible) => ({ KHR_node_visibility: { visible } });
+  const lamp = (light) => ({ KHR_lights_punctual: { light } });
+  const pointer = (node) => ({ path: 'pointer', extensions: { KHR_animation_pointer: { pointer: `/nodes/${node}/extensions/KHR_node_visibility/visible` } } });
+  const made = () => withArrays([new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), new Float32Array([0, 1, 2]), new Uint8Array([0, 1, 0, 0])], {
+    extensions: { KHR_lights_punctual: { lights: [{ type: 'point', intensity: 1 }, { type: 'point', intensity: 2 }] } },
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: 3, type: 'VEC3' }, { bufferView: 1, componentType: 5126, count: 3, type: 'SCALAR' },
+      { bufferView: 2, componentType: 5121, count: 3, type: 'SCALAR' },
+    ],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+    nodes: [
+      { mesh: 0, extensions: lamp(0) }, { mesh: 0, translation: [9, 0, 0], children: [2], extensions: hide(false) },
+      { mesh: 0, children: [3], extensions: { ...hide(true), ...lamp(1) } }, { mesh: 0, extensions: hide('no') },
+    ],
+    animations: [
+      { samplers: [{ input: 1, output: 2, interpolation: 'STEP' }], channels: [{ sampler: 0, target: pointer(1) }] },
+      { samplers: [{ input: 1, output: 2 }, { input: 1, output: 2, interpolation: 'STEP' }], channels: [{ sampler: 0, target: pointer(1) }, { sampler: 1, target: pointer(7) }, { sampler: 1, target: { node: 0, path: 'visible' } }] },
+    ],
+  });
+  assert.deepEqual(geometry(made()).map(({ node }) => node), [0]);
+  const file = made();
+  const all = geometry(file, { hidden: true });
+  const seen = () => all.filter(({ hidden }) => !hidden).map(({ node }) => node);
+  assert.deepEqual(seen(), [0]);
+  assert.deepEqual([...bounds(all).middle], [0.5, 0.5, 0], 'of what is seen');
+  const moves = new Moves(file, all);
+  const lit = () => new FileLights(file).at(moves).map(({ radiance }) => radiance[0]);
+  assert.deepEqual([seen(), lit()], [[0], [1]]);
+  assert.equal(moves.clips.length, 1);
+  assert.equal(moves.said.length, 3, moves.said.join('\n'));
+  assert.match(moves.said[0], /STEP/);
+  for (const [seconds, nodes, lamps] of [[0.5, [0], [1]], [1.5, [0, 1, 2, 3], [1, 2]], [2.5, [0], [1]]]) {
+    moves.pose(moves.clips[0], seconds);
+    assert.deepEqual([seen(), lit()], [nodes, lamps], `${seconds}`);
+  }
+  moves.pose(moves.clips[0], 1.5);
+  moves.pose(null, 0);
+  assert.deepEqual(seen(), [0], 'at rest it is as the file says');
+});
+
 /** A glTF file whose one buffer is the arrays, each a buffer view. */
 function withArrays(arrays, more) {
   const bytes = Buffer.concat(arrays.map((each) => Buffer.from(each.buffer)));
@@ -225,6 +267,23 @@ test('nodes that go in circles are walked once', () => {
   const places = [];
   eachNode(openGltf('a.gltf', Buffer.from(JSON.stringify({ nodes: [{}, { children: [0], translation: [5, 0, 0] }] }))), (_, world, index) => places.push([index, world[12]]));
   assert.deepEqual(places, [[1, 5], [0, 5]]);
+});
+
+test('a parameter and a texture stand in the bodies that name them, and in the graph where none does', () => {
+  const body = { nodes: [{ id: 'a', node: 'n', inputs: { x: { parameter: 'inner' }, y: { texture: 'image' } } }], outputs: { r: { node: 'a' } } };
+  const json = {
+    template: 'forward', nodes: [{ id: 'g', group: 'group' }], outputs: { color: { node: 'g' } }, groups: { group: body },
+    parameters: { inner: { type: 'float' }, outer: { type: 'float' }, idle: { type: 'float' } }, textures: { image: { type: 'sampler2D' } },
+  };
+  const socket = (name, source) => ({ name, type: 'float', low: null, high: null, or_zero: false, source: source ?? null, optional: true });
+  const sockets = { g: { inputs: [socket('x', { parameter: 'outer' })], outputs: [socket('')] }, 'group/a': { inputs: [socket('x', { parameter: 'inner' }), socket('y', { texture: 'image' })], outputs: [socket('')] } };
+  const graph = {
+    nodes: (group) => (group ? body.nodes : json.nodes), outputs: (group) => (group ? body.outputs : json.outputs),
+    sockets: (node) => sockets[node] ?? { inputs: [socket('color', { node: 'g' })], outputs: [] },
+  };
+  const keys = (group) => [...viewOf(graph, json, group).boxes.keys()];
+  assert.deepEqual(keys(''), ['group g', 'parameter outer', 'parameter idle', 'outputs ']);
+  assert.deepEqual(keys('group'), ['node a', 'parameter inner', 'texture image', 'outputs ']);
 });
 
 test('half floats are rounded to the nearest', () => {

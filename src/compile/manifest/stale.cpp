@@ -68,11 +68,16 @@ void removeStale(const std::string& folder, const std::vector<std::string>& earl
                  const std::vector<std::string>& kept, const std::vector<std::string>& inputs) {
   namespace fs = std::filesystem;
   const std::set<std::string> needed(kept.begin(), kept.end());
+  std::set<std::string> left;  // folders of targets
+  std::error_code ignored;     // what cannot be removed stays, and harms nobody
   for (const std::string& path : earlier) {
     const std::string file = folder + "/" + path;
-    std::error_code ignored;  // what cannot be removed stays, and harms nobody
     if (needed.contains(path) || !fs::is_regular_file(fs::symlink_status(file, ignored))) continue;
-    if (clashes(inputs, {file}).empty()) fs::remove(file, ignored);
+    if (clashes(inputs, {file}).empty() && fs::remove(file, ignored))
+      left.insert(folder + "/" + path.substr(0, path.find('/')));
+  }
+  for (const std::string& target : left) {
+    if (fs::is_directory(fs::symlink_status(target, ignored))) fs::remove(target, ignored);  // an empty one
   }
 }
 

@@ -13,7 +13,8 @@ namespace lacquer {
 /// manifest or it is none of Lacquer's.
 std::vector<std::string> listedShaders(const std::string& path);
 
-/// Removes those of `earlier` that are regular files below the folder, not among `kept` and none of `inputs`.
+/// Removes those of `earlier` that are regular files below the folder, not among `kept` and none of `inputs`,
+/// and the folders of targets that are empty then.
 void removeStale(const std::string& folder, const std::vector<std::string>& earlier,
                  const std::vector<std::string>& kept, const std::vector<std::string>& inputs);
 

@@ -210,11 +210,12 @@ std::vector<Candidate> search(const ir::Module& module, const Settings& settings
 }
 
 std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
-                             std::span<const double> errors) {
+                             std::span<const double> errors, const std::function<void()>& tried) {
   const Family& family = settings.family != nullptr ? *settings.family : families()[0];
   std::vector<Candidate> all = Search(module, settings).run();
   const Candidate exact = std::move(all.back());
   std::vector<Candidate> front{exact};
+  if (tried) tried();
   for (const double error : errors) {
     // Of the plain form other functions of one number are left than of the cheapest one.
     for (const ir::Module* from : {&exact.module, &module}) {
@@ -229,6 +230,7 @@ std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
       while (front.size() > 1 && front.back().outcome.error >= outcome.error) front.pop_back();
       front.push_back({std::move(made->module), outcome});
     }
+    if (tried) tried();
   }
   return front;
 }

@@ -2,6 +2,7 @@
 // real numbers, by equality saturation. docs/optimize.md
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,9 @@ std::vector<Candidate> search(const ir::Module& module, const Settings& settings
 
 /// The Pareto front of cycles against error by the model: first the cheapest form that is equal in real
 /// numbers, then cheaper ones, each off by more than the one before it and by at most one of `errors`, which
-/// ascend. Settings::error does not count.
+/// ascend. Settings::error does not count. `tried` is called behind the search for the first form, and behind
+/// that for each error.
 std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
-                             std::span<const double> errors);
+                             std::span<const double> errors, const std::function<void()>& tried = {});
 
 }  // namespace lacquer::optimize

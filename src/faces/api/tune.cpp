@@ -26,6 +26,8 @@ namespace {
 /// The errors that are tried.
 constexpr double kErrors[] = {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1};
 
+constexpr size_t kForms = 1 + std::size(kErrors);
+
 constexpr std::string_view kReason =
     "stated of the reference body, or proved of what stands for a part of it";
 
@@ -34,11 +36,15 @@ struct Front {
   std::vector<optimize::Candidate> forms;
 };
 
-Front frontOf(const ir::Module& module, const Options& options) {
+Front frontOf(const ir::Module& module, const Options& options, const Progress& progress = {}) {
   optimize::Settings settings = optimization(options);
   settings.level = std::max(settings.level, 1);
   const std::string family = options.optimize_for.empty() ? optimizeFamilies()[0] : options.optimize_for;
-  return {family, optimize::front(module, settings, kErrors)};
+  size_t done = 0;
+  const auto tried = [&] {
+    if (progress) progress(++done, kForms);
+  };
+  return {family, optimize::front(module, settings, kErrors, tried)};
 }
 
 TunedForm formOf(const optimize::Outcome& outcome) {
@@ -46,8 +52,8 @@ TunedForm formOf(const optimize::Outcome& outcome) {
           static_cast<size_t>(outcome.approximations)};
 }
 
-Tuned tuned(std::string name, const ir::Module& module, const Options& options) {
-  const Front front = frontOf(module, options);
+Tuned tuned(std::string name, const ir::Module& module, const Options& options, const Progress& progress) {
+  const Front front = frontOf(module, options, progress);
   Tuned made;
   made.name = std::move(name);
   made.family = front.family;
@@ -138,10 +144,11 @@ std::string documentation(const Tuned& tuned, const TunedForm& form) {
 
 }  // namespace
 
-std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages) {
+std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages,
+                          const Progress& progress) {
   const std::optional<Named> named = find(name, options, messages);
   if (!named) return std::nullopt;
-  return tuned(name, nodeModule(*named->node, named->variant).module, options);
+  return tuned(name, nodeModule(*named->node, named->variant).module, options, progress);
 }
 
 std::optional<std::string> variantText(const std::string& node, size_t form, const std::string& variant,
@@ -168,35 +175,42 @@ std::optional<std::string> variantText(const std::string& node, size_t form, con
                       "the node language has no word for a loop of the shader or a sum over its lights")
                      .value());
   }
-  const Tuned plain{node, front.family, std::round(chosen.outcome.plain), {}, {}};
+  Tuned plain;
+  plain.family = front.family;
+  plain.plain = std::round(chosen.outcome.plain);
   return documentation(plain, formOf(chosen.outcome)) + fmt::format("variant {} {{\n{}}}\n", variant, *body);
 }
 
 namespace {
 
-/// What goes to the vertices, by pictures as `lacquer lod` makes them when nothing is said.
-std::vector<TunedMove> movesOf(const EvalSubject& of, const gltf::VertexAttributes& attributes,
-                               const passes::LightFacts& lights, FileImages& images, const Language& language,
-                               const Options& options, const preview::Mesh& mesh, Messages& messages) {
+/// Adds what goes to the vertices, by pictures as `lacquer lod` makes them when nothing is said.
+void addMoves(Tuned& to, const EvalSubject& of, const gltf::VertexAttributes& attributes,
+              const passes::LightFacts& lights, FileImages& images, const Language& language,
+              const Options& options, const preview::Mesh& mesh, Messages& messages,
+              const Progress& progress) {
   const Lod lod;
   const LodMaterial::Given given{of,      attributes, lights, images,    language,
                                  options, lod.texels, mesh,   lod.radius};
-  const Result<std::vector<lod::Moved>> found = lod::moves(given, lod.size, messages);
-  if (!found) return report(found.error(), images.file(), messages), std::vector<TunedMove>();
-  std::vector<TunedMove> all;
-  for (const lod::Moved& one : *found) {
+  const auto beside = [&](size_t done, size_t known) {
+    if (progress) progress(kForms + done, kForms + known);
+  };
+  const auto found = lod::moves(given, lod.size, messages, beside);
+  if (!found) return report(found.error(), images.file(), messages);
+  to.has_vertices = found->has_value();
+  if (!to.has_vertices) return;
+  for (const lod::Moved& one : **found) {
     TunedMove move{one.words, {}, one.shader, one.error, one.cycles, one.more, one.cost};
     if (options.optimize == 0) move.options = {"--optimize", "1"};
     move.options.emplace_back("--model-costs");
     for (const std::string& word : one.words) move.options.insert(move.options.end(), {"--simplify", word});
-    all.push_back(std::move(move));
+    to.moves.push_back(std::move(move));
   }
-  return all;
 }
 
 /// `Impl` is Graph::Impl, which friends alone may name.
 template <class Impl>
-std::optional<Tuned> tunedGraph(const Impl& impl, const Options& options, Messages& messages) {
+std::optional<Tuned> tunedGraph(const Impl& impl, const Options& options, Messages& messages,
+                                const Progress& progress) {
   // Up to where the search would begin.
   Options plain = options;
   plain.optimize = 0;
@@ -216,28 +230,29 @@ std::optional<Tuned> tunedGraph(const Impl& impl, const Options& options, Messag
     report(module.error(), impl.file, messages);
     return std::nullopt;
   }
-  return tuned(impl.graph.name, before, options);
+  return tuned(impl.graph.name, before, options, progress);
 }
 
 }  // namespace
 
-std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages) {
+std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages,
+                          const Progress& progress) {
   if (!filled(graph.impl_.get(), "graph", messages)) return std::nullopt;
   const auto& impl = *graph.impl_;
-  std::optional<Tuned> made = tunedGraph(impl, options, messages);
+  std::optional<Tuned> made = tunedGraph(impl, options, messages, progress);
   const auto language = libraryFor(options);
   if (!made || !language || impl.images == ImagesOf::Gltf) return made;
   const InMemory of{impl.graph, **language, impl.file, impl.bytes, impl.images};
   FileImages images = of.images(options);
   const gltf::VertexAttributes any{true, true, false, {true, true, false, false}};
-  made->moves = movesOf(of.subject, any, impl.scene_lights, images, **language, options, {}, messages);
+  addMoves(*made, of.subject, any, impl.scene_lights, images, **language, options, {}, messages, progress);
   return made;
 }
 
 std::optional<Tuned> tune(const Scene& scene, size_t material, const Attributes& attributes,
-                          const Options& options, Messages& messages) {
+                          const Options& options, Messages& messages, const Progress& progress) {
   const Graph graph = scene.graph(material, attributes, options, messages);
-  std::optional<Tuned> made = graph ? tune(graph, options, messages) : std::nullopt;
+  std::optional<Tuned> made = graph ? tune(graph, options, messages, progress) : std::nullopt;
   if (!made) return made;
   const auto& impl = *scene.impl_;
   const material::Material& of = impl.document.materials[material];
@@ -246,8 +261,8 @@ std::optional<Tuned> tune(const Scene& scene, size_t material, const Attributes&
   if (!language || !resolveNames(**language, named)) return made;
   FileImages images(impl.document.path, options, impl.bytes);
   const preview::Mesh mesh = lod::meshOf(of, images, **language, messages);
-  made->moves =
-      movesOf(of, fromPublic(attributes), lightsOf(impl.document), images, **language, named, mesh, messages);
+  addMoves(*made, of, fromPublic(attributes), lightsOf(impl.document), images, **language, named, mesh,
+           messages, progress);
   return made;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/streams.h"
+#include "cli/table.h"
 
 namespace lacquer::cli {
 
@@ -60,6 +61,21 @@ void ProgressLine::operator()(size_t done, size_t known) {
   if (!shown_) return;
   say("\r{}/{} {}", done, known, what_);
   open_ = true;
+}
+
+StepLines::StepLines(bool shown) : shown_(shown), terminal_(terminalWidth() > 0) {}
+
+StepLines::~StepLines() {
+  if (terminal_ && said_ > 0) say("\n");
+}
+
+void StepLines::operator()(size_t piece, size_t steps, std::string_view text) {
+  constexpr size_t kApart = 50;
+  if (piece != piece_) said_ = 0;
+  piece_ = piece;
+  if (!shown_ || (!terminal_ && steps < said_ + kApart)) return;
+  said_ = steps;
+  say("{}{}{}", terminal_ ? "\r" : "", text, terminal_ ? "" : "\n");
 }
 
 Report makePlan(const std::string& ninja, const std::string& json, const std::vector<std::string>& arguments,

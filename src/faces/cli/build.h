@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lacquer.h"
@@ -22,6 +23,21 @@ private:
   bool shown_;
   const char* what_;
   bool open_ = false;
+};
+
+/// How far a search is: one line of a terminal, or elsewhere a line for each fifty steps.
+class StepLines {
+public:
+  explicit StepLines(bool shown);
+  StepLines(const StepLines&) = delete;
+  StepLines& operator=(const StepLines&) = delete;
+  ~StepLines();
+  /// Of each piece the steps begin anew.
+  void operator()(size_t piece, size_t steps, std::string_view text);
+
+private:
+  bool shown_, terminal_;
+  size_t piece_ = 0, said_ = 0;
 };
 
 /// `lacquer plan`: `arguments` are the program's own, from its name on; with `replan` the plan keeps

@@ -1,5 +1,7 @@
 #include "cli/checks.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -44,6 +46,15 @@ std::string limit(const std::string& text) {
 }
 
 }  // namespace
+
+CLI::Validator numberFrom(double low, double high) {
+  const auto within = [low, high](const std::string& text) {
+    double number = 0;
+    const bool good = CLI::detail::lexical_cast(text, number) && number >= low && number <= high;
+    return good ? std::string() : fmt::format("'{}' is no number from {} to {}", text, low, high);
+  };
+  return CLI::Validator(within, CLI::Range(low, high).get_description());
+}
 
 const CLI::Validator kNotEmpty(empty, "");
 const CLI::Validator kWhole(whole, "");

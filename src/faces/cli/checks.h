@@ -10,8 +10,9 @@ namespace lacquer::cli {
 extern const CLI::Validator kNotEmpty;
 /// Digits of a number below 2^64: CLI11 takes a sign, more digits than there is room for, and octal numbers.
 extern const CLI::Validator kWhole;
-/// Beside CLI::Range, which takes what is no number for one in every range.
 extern const CLI::Validator kNumber;
+/// In place of CLI::Range, which takes what is no number for one in every range.
+CLI::Validator numberFrom(double low, double high);
 /// A limit as the library takes it.
 extern const CLI::Validator kLimit;
 

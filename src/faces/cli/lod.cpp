@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <functional>
-
 #include "cli/answer.h"
 #include "cli/checks.h"
 #include "cli/streams.h"
@@ -18,16 +16,18 @@ void addLod(CLI::App& verb, LodFlags& flags) {
       ->check(kWhole)
       ->capture_default_str();
   verb.add_option("--most-error", flags.lod.most_error, "the mean colour difference of the last of them")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(numberFrom(0, 100))
       ->capture_default_str();
   auto* errors = verb.add_option("--error", flags.lod.errors,
                                  "instead, the mean colour difference of each level, such as 0.5,1,2")
                      ->delimiter(',')
-                     ->allow_extra_args(false);
+                     ->allow_extra_args(false)
+                     ->check(kNumber);
   verb.add_option("--cost", flags.lod.costs,
                   "instead, the part of the exact shader's cost of each level, such as 0.8,0.6")
       ->delimiter(',')
       ->allow_extra_args(false)
+      ->check(kNumber)
       ->excludes(errors);
   verb.add_option("--size", flags.lod.size, "pixels of the balls that candidates are compared by")
       ->check(CLI::Range(16, 512))
@@ -35,7 +35,7 @@ void addLod(CLI::App& verb, LodFlags& flags) {
       ->capture_default_str();
   verb.add_option("--radius", flags.lod.radius,
                   "meters: the ball's radius, where the file has no geometry of a material")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(numberFrom(1e-6, 1e6))
       ->capture_default_str();
   verb.add_option("--texel", flags.lod.texels,
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
@@ -65,31 +65,11 @@ void printLevels(const Levels& levels) {
   fmt::print("\n{}/report.html has the pictures\n", printable(levels.output));
 }
 
-/// How far the search is: one line of a terminal, or elsewhere a line for each few shaders.
-class StepLines {
-public:
-  explicit StepLines(bool shown) : shown_(shown), terminal_(terminalWidth() > 0) {}
-  StepLines(const StepLines&) = delete;
-  StepLines& operator=(const StepLines&) = delete;
-  ~StepLines() {
-    if (terminal_ && said_ > 0) say("\n");
-  }
-
-  void operator()(const LodStep& step) {
-    constexpr size_t kApart = 50;
-    if (step.done != material_) said_ = 0;
-    material_ = step.done;
-    if (!shown_ || (!terminal_ && step.measured < said_ + kApart)) return;
-    said_ = step.measured;
-    const std::string cached = step.cached == 0 ? "" : fmt::format(", {} from the cache", step.cached);
-    say("{}material {} of {}, {}: {} shaders measured{}{}", terminal_ ? "\r" : "", step.done + 1, step.known,
-        printable(step.material), step.measured, cached, terminal_ ? "" : "\n");
-  }
-
-private:
-  bool shown_, terminal_;
-  size_t material_ = 0, said_ = 0;
-};
+std::string textOf(const LodStep& step) {
+  const std::string cached = step.cached == 0 ? "" : fmt::format(", {} from the cache", step.cached);
+  return fmt::format("material {} of {}, {}: {} shaders measured{}", step.done + 1, step.known,
+                     printable(step.material), step.measured, cached);
+}
 
 }  // namespace
 
@@ -98,7 +78,7 @@ int runLod(const LodFlags& flags, const std::vector<std::string>& files,
   return answerTo({flags.json, flags.quiet}, printLevels, [&](Messages& messages, const Progress& progress) {
     StepLines lines(!flags.quiet);
     Lod lod = flags.lod;
-    lod.step = std::ref(lines);
+    lod.step = [&](const LodStep& step) { lines(step.done, step.measured, textOf(step)); };
     return makeLevels(lod, files, materials, options, messages, progress);
   });
 }

@@ -134,7 +134,7 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
       ->capture_default_str();
   verb.add_option("--relaxed", flags.options.relaxed,
                   "the part of a colour, such as 0.01, that half precision may change (docs/intervals.md)")
-      ->check(CLI::Range(0.0, 0.5));
+      ->check(numberFrom(0, 0.5));
   verb.add_flag("--half", flags.options.half,
                 "types of 16 bits for what --relaxed allows, where they are cheaper (docs/intervals.md)");
   verb.add_option("--optimize", flags.options.optimize,
@@ -144,7 +144,7 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
   if (verb.get_option_no_throw("--error") == nullptr) {  // levels of detail have errors of their own
     verb.add_option("--error", flags.options.optimize_error,
                     "the part of the light that approximations of --optimize 2 may change, such as 0.001")
-        ->check(CLI::Range(0.0, 0.5));
+        ->check(numberFrom(0, 0.5));
   }
   verb.add_option("--optimize-for", flags.options.optimize_for, "the GPUs whose cycles --optimize counts")
       ->check(CLI::IsMember(optimizeFamilies()));

@@ -57,9 +57,9 @@ void addParameters(CLI::App& verb, NamedNumbers& parameters) {
 void addClock(CLI::App& verb, double& time, double& frame) {
   constexpr double kLast = 16777216;  // as the templates have it
   verb.add_option("--time", time, "seconds since the animation began, for materials that ask for them")
-      ->check(CLI::Range(0.0, kLast));
+      ->check(numberFrom(0, kLast));
   verb.add_option("--frame", frame, "the picture's number, for materials that ask for it")
-      ->check(CLI::Range(0.0, kLast));
+      ->check(numberFrom(0, kLast));
 }
 
 void addValueLook(CLI::App& verb, ValueLook& look) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cli/build.h"
 #include "cli/checks.h"
 #include "cli/graphs.h"
 #include "cli/streams.h"
@@ -39,10 +40,14 @@ void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
       ->check(kWhole)
       ->check(CLI::Range(1, 1'000'000))
       ->needs(variant);
+  verb.add_flag("-q,--quiet", flags.quiet, "no progress");
   addMaterialFlags(verb, options);
 }
 
 namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
 
 void printTable(const Tuned& tuned) {
   fmt::print("{}: {} cycles on {} as it is, by the model\n\n", printable(tuned.name), tuned.plain,
@@ -53,7 +58,11 @@ void printTable(const Tuned& tuned) {
     fmt::print("{:>10.2g} {:>8.0f} {:>5.0f} % {:>15} {:>8.2f}\n", form.error, form.cycles, saved(form.cycles),
                form.approximations, form.growth);
   }
-  if (tuned.moves.empty()) return;
+  if (!(tuned.forms.back().cycles < tuned.plain)) fmt::print("\nnothing cheaper was found\n");
+  if (tuned.moves.empty()) {
+    if (tuned.has_vertices) fmt::print("\nno node pays at the vertices\n");
+    return;
+  }
   fmt::print("\nnodes computed at the vertices, by their difference in pictures\n\n");
   fmt::print("{:>6} {:>8} {:>6} {:>8} {:>7} {:>8}  options\n", "dE", "dE 95 %", "FLIP", "cycles", "saved",
              "vertices");
@@ -88,7 +97,7 @@ void printJson(const Tuned& tuned) {
                      {"vertex_cycles", move.vertex_cycles},
                      {"cost", move.cost}});
   }
-  if (!moves.empty()) all["moves"] = moves;
+  if (tuned.has_vertices) all["moves"] = moves;
   fmt::print("{}\n", json::dump(all, 2));
 }
 
@@ -98,17 +107,21 @@ bool isFile(const std::string& subject) {
 }
 
 std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messages& messages) {
-  if (!isFile(flags.subject)) return tune(flags.subject, options, messages);
+  StepLines lines(!flags.quiet);
+  const Progress progress = [&](size_t done, size_t known) {
+    lines(0, done, fmt::format("{} of {} forms tried", done, known));
+  };
+  if (!isFile(flags.subject)) return tune(flags.subject, options, messages, progress);
   std::optional<Tuned> found;
   if (isGraphFile(flags.subject)) {
     const Graph graph = Graph::load(flags.subject, options, messages);
-    return graph ? tune(graph, options, messages) : found;
+    return graph ? tune(graph, options, messages, progress) : found;
   }
   const Scene scene = Scene::load(flags.subject, options, messages);
   const std::optional<size_t> material = scene ? scene.findMaterial(flags.material, messages) : std::nullopt;
   if (!material) return found;
   const std::vector<Attributes> uses = scene.uses(*material);
-  return tune(scene, *material, uses.empty() ? kUnusedAttributes : uses[0], options, messages);
+  return tune(scene, *material, uses.empty() ? kUnusedAttributes : uses[0], options, messages, progress);
 }
 
 /// Writes the picture, never over what is read.
@@ -124,8 +137,6 @@ bool draw(const Tuned& tuned, const Strings& inputs, const std::string& file) {
 
 /// A node, a variant, a name or a line that is not there is wrong usage; files have errors of their own.
 int statusOf(const TuneFlags& flags, const Messages& messages) {
-  constexpr int kFailed = 1;
-  constexpr int kUsage = 2;
   const bool own = std::all_of(messages.begin(), messages.end(),
                                [](const Message& message) { return message.file.empty(); });
   return own && !isFile(flags.subject) ? kUsage : kFailed;
@@ -136,6 +147,11 @@ int statusOf(const TuneFlags& flags, const Messages& messages) {
 int runTune(const TuneFlags& flags, const Options& options) {
   Messages messages;
   if (!flags.variant.empty()) {
+    if (isFile(flags.subject)) {
+      say("tune: --variant is of a node, and '{}' is a file; `lacquer nodes` lists the nodes\n",
+          printable(flags.subject));
+      return kUsage;
+    }
     const auto text = variantText(flags.subject, flags.form, flags.variant, options, messages);
     print(messages);
     if (text) fmt::print("{}", *text);
@@ -146,7 +162,7 @@ int runTune(const TuneFlags& flags, const Options& options) {
   if (!tuned || hasError(messages)) return statusOf(flags, messages);
   if (!flags.picture.empty()) {
     const Strings inputs = isFile(flags.subject) ? Strings{flags.subject} : Strings{};
-    if (!draw(*tuned, inputs, flags.picture)) return 1;
+    if (!draw(*tuned, inputs, flags.picture)) return kFailed;
   }
   if (flags.json)
     printJson(*tuned);

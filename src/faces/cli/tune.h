@@ -13,7 +13,7 @@ namespace lacquer::cli {
 struct TuneFlags {
   std::string subject;
   std::optional<std::string> material;
-  bool json = false;
+  bool json = false, quiet = false;
   std::string picture;  ///< the file to draw run time against error into
   std::string variant;  ///< what a form is called as a variant, which is printed then
   size_t form = 0;      ///< from 1 on; 0: the last one

@@ -7,6 +7,7 @@
 #include "setting/options.h"
 #include "setting/simplify.h"
 #include "shader/module.h"
+#include "support/jobs.h"
 
 namespace lacquer::lod {
 
@@ -43,7 +44,8 @@ Words nodesOf(const LodMaterial::Given& given, const Options& options) {
 
 }  // namespace
 
-Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size, Messages& messages) {
+Result<std::optional<std::vector<Moved>>> moves(const LodMaterial::Given& given, uint32_t size,
+                                                Messages& messages, const Progress& progress) {
   Options plain = given.options;
   plain.programs_model = true;
   plain.optimize = 0;
@@ -55,7 +57,7 @@ Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size,
                                     given.texels,  given.mesh,       given.radius};
   LodMaterial subject(searched, size);
   const Result<Tried> opened = subject.open(messages);
-  if (!opened && opened.error().front().code == "lod-template") return std::vector<Moved>();
+  if (!opened && opened.error().front().code == "lod-template") return std::nullopt;
   if (!opened) return tl::make_unexpected(opened.error());
   const Result<ir::Module> exact = subject.module({});
   if (!exact) return tl::make_unexpected(exact.error());
@@ -63,11 +65,21 @@ Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size,
   const auto moreOf = [&](const ir::Module& module) {
     return std::max(vertexCycles(module, family) - at_vertices, 0.0);
   };
+  size_t done = 0, known = 0;
   const Measure measure = [&](const std::vector<Words>& sets) {
-    std::vector<std::optional<Tried>> tried = subject.measure(sets);
-    for (std::optional<Tried>& one : tried) {
-      const Result<ir::Module> module = one ? subject.module(one->words) : exact;
-      if (one && module) one->cost = fragmentCycles(*module, family) + kVertexShare * moreOf(*module);
+    const size_t together = std::max<size_t>(16, 4 * threads());
+    known += sets.size();
+    std::vector<std::optional<Tried>> tried;
+    for (size_t i = 0; i < sets.size(); i += together) {
+      const auto begin = sets.begin() + static_cast<ptrdiff_t>(i);
+      const size_t count = std::min(together, sets.size() - i);
+      for (std::optional<Tried>& one : subject.measure({begin, begin + static_cast<ptrdiff_t>(count)})) {
+        const Result<ir::Module> module = one ? subject.module(one->words) : exact;
+        if (one && module) one->cost = fragmentCycles(*module, family) + kVertexShare * moreOf(*module);
+        tried.push_back(std::move(one));
+      }
+      done += count;
+      if (progress) progress(done, known);
     }
     return tried;
   };

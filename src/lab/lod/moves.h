@@ -2,6 +2,7 @@
 // pictures.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,9 @@ struct Moved {
 
 /// The front of cost against the mean colour difference in pictures of `size` pixels: each cheaper than the
 /// one before it, and off by more; the exact shader is not among them. All shaders are the cheapest equal
-/// forms of Options::optimize, at least 1, by the model alone. Empty where the template shows nothing that is
-/// lit.
-Result<std::vector<Moved>> moves(const LodMaterial::Given& given, uint32_t size, Messages& messages);
+/// forms of Options::optimize, at least 1, by the model alone. Nothing where the template shows nothing that
+/// is lit. `progress` counts sets of nodes.
+Result<std::optional<std::vector<Moved>>> moves(const LodMaterial::Given& given, uint32_t size,
+                                                Messages& messages, const Progress& progress = {});
 
 }  // namespace lacquer::lod

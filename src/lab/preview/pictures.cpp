@@ -165,6 +165,12 @@ private:
       settings_.push_back(std::move(*setting));
     }
     for (const PreviewSetting& setting : settings_) {
+      for (const std::string& word : setting.options.simplify) {
+        if (!word.starts_with("vertex:")) continue;
+        return fail("no-triangles", {},
+                    fmt::format("'{}' cannot be seen on a ball, which has no vertices", printable(word)),
+                    "leave it out here; `lacquer lod` and `lacquer tune` draw triangles");
+      }
       if (Diagnostics wrong = checkReading(setting.options); !wrong.empty())
         return tl::make_unexpected(std::move(wrong));
       auto library = libraryFor(setting.options);

@@ -128,6 +128,10 @@ function named(sources: (GraphSource | null)[], kind: 'parameter' | 'texture'): 
   return names;
 }
 
+/** Of a group's body, in its JSON form. */
+const sourcesOf = ({ nodes, outputs }: { nodes?: { inputs?: Record<string, GraphSource> }[]; outputs?: Record<string, GraphSource> }): GraphSource[] =>
+  [...(nodes ?? []).flatMap(({ inputs }) => Object.values(inputs ?? {})), ...Object.values(outputs ?? {})];
+
 export function viewOf(graph: Graph, json: Full, group: string): View {
   const boxes = new Map<string, Box>();
   const add = (box: Box) => boxes.set(box.key, box);
@@ -142,12 +146,18 @@ export function viewOf(graph: Graph, json: Full, group: string): View {
   const body = group ? json.groups?.[group] : json;
   const outputs = graph.outputs(group);
   const sources = [...[...boxes.values()].flatMap(({ inputs }) => inputs.map(({ source }) => source)), ...Object.values(outputs)];
-  const seen = named(sources, 'parameter');
+  // What only other bodies name stands there; what none names, in the graph itself.
+  const elsewhere = group ? [] : Object.values(json.groups ?? {}).flatMap(sourcesOf);
+  const standsHere = (kind: 'parameter' | 'texture') => {
+    const [here, there] = [named(sources, kind), named(elsewhere, kind)];
+    return (name: string) => here.has(name) || (!group && !there.has(name));
+  };
+  const parameterStands = standsHere('parameter');
   for (const [name, { type, range, ui }] of Object.entries(json.parameters ?? {}))
-    if (!group || seen.has(name)) add(boxOf('parameter', name, type, [], [plain('', type, range)], ui));
-  const images = named(sources, 'texture');
+    if (parameterStands(name)) add(boxOf('parameter', name, type, [], [plain('', type, range)], ui));
+  const textureStands = standsHere('texture');
   for (const [name, { type, ui }] of Object.entries(json.textures ?? {}))
-    if (!group || images.has(name)) add(boxOf('texture', name, type, [], [plain('', type)], ui));
+    if (textureStands(name)) add(boxOf('texture', name, type, [], [plain('', type)], ui));
   if (group) {
     for (const [name, { type, range, ui }] of Object.entries(json.groups?.[group]?.inputs ?? {}))
       add(boxOf('input', name, type, [], [plain('', type, range)], ui));
