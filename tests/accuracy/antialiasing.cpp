@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "accuracy/normal_maps.h"
 #include "eval/evaluate.h"
@@ -29,6 +31,7 @@ constexpr double kSlope = 0.3;     ///< of each of the three waves that they are
 constexpr int kAcross = 8;         ///< samples of the yardstick, along each side of a pixel
 constexpr int kMappedRadius = 40;  ///< in pixels
 constexpr double kMost = 3000;     ///< pixels of a ball that are looked at
+constexpr size_t kAtOnce = 4096;   ///< places that are drawn together: more would not stay in the caches
 
 /// A place of a smooth ball, seen from far away along z.
 eval::Point placeAt(double x, double y) {
@@ -88,13 +91,26 @@ public:
     if (module) module_ = std::move(*module);
   }
 
-  /// Green of each point, at another roughness than the material's if that is named.
-  std::vector<double> at(const Points& drawn, const std::string& rough = {}, double roughness = 0) const {
-    const std::vector<eval::Point>& points = drawn.points;
+  /// Green of each point.
+  std::vector<double> at(const Points& drawn) const { return greenOf(bound(drawn), drawn.points.size()); }
+
+  /// The same at other roughnesses than the material's, one after the other.
+  std::vector<std::vector<double>> at(const Points& drawn, const std::string& rough,
+                                      const std::vector<double>& roughnesses) const {
+    eval::Bindings bindings = bound(drawn);
+    std::vector<std::vector<double>> all;
+    for (const double roughness : roughnesses) {
+      bindings.columns[rough] = eval::Column::constant({roughness});
+      all.push_back(greenOf(bindings, drawn.points.size()));
+    }
+    return all;
+  }
+
+private:
+  eval::Bindings bound(const Points& drawn) const {
     eval::Bindings bindings;
-    eval::bindPoints(module_, points, bindings);
+    eval::bindPoints(module_, drawn.points, bindings);
     bindings.quads = true;
-    if (!rough.empty()) bindings.columns[rough] = eval::Column::constant({roughness});
     for (const ir::TextureSlot& slot : module_.textures) {
       eval::Sampler& sampler = bindings.textures[slot.name];
       sampler = eval::Sampler([&drawn](size_t, const Vec3& uv, double lod) {
@@ -104,17 +120,20 @@ public:
       });
       sampler.size = {NormalMap::kSize, NormalMap::kSize, 1};
     }
-    std::vector<double> result(points.size(), std::nan(""));
+    return bindings;
+  }
+
+  std::vector<double> greenOf(const eval::Bindings& bindings, size_t count) const {
+    std::vector<double> result(count, std::nan(""));
     for (const ir::Output& output : module_.outputs) {
       if (output.kind != ir::OutputKind::Color) continue;
-      const auto values = eval::evaluate<double>(module_, {{output.value}}, bindings, points.size());
+      const auto values = eval::evaluate<double>(module_, {{output.value}}, bindings, count);
       EXPECT_TRUE(values) << (values ? "" : format(values.error()[0]));
-      for (size_t i = 0; values && i < result.size(); ++i) result[i] = (*values)[0][4 * i + 1];
+      for (size_t i = 0; values && i < count; ++i) result[i] = (*values)[0][4 * i + 1];
     }
     return result;
   }
 
-private:
   ir::Module module_;
 };
 
@@ -134,14 +153,28 @@ struct Ball {
   }
 };
 
-/// What is drawn of a ball: quads of pixels, 64 places in each pixel, and the mean of their normals.
+/// What is drawn of a ball: quads of pixels, the radiance of 64 places in each pixel, in the mean, and the
+/// mean of their normals.
 struct Seen {
-  Points quads, fine, means;
+  Points quads, means;
+  std::vector<double> exact;
 };
 
-Seen seen(const Ball& ball) {
+/// Draws the places that are there, and empties them.
+void drawFine(const Drawn& off, Points& fine, Seen& all) {
+  const std::vector<double> radiance = off.at(fine);
+  for (size_t i = 0; i < radiance.size(); i += kAcross * kAcross) {
+    double sum = 0;
+    for (size_t s = 0; s < kAcross * kAcross; ++s) sum += radiance[i + s];
+    all.exact.push_back(sum / (kAcross * kAcross));
+  }
+  fine.points.clear();
+}
+
+Seen seen(const Ball& ball, const Drawn& off) {
   Seen all;
-  all.quads.map = all.fine.map = ball.map;
+  Points fine;
+  all.quads.map = fine.map = ball.map;
   all.quads.lod = std::log2(std::max(1.0, ball.texels));
   const int every = static_cast<int>(std::ceil(3.14 * ball.radius * ball.radius / kMost));
   for (int y = -ball.radius; y < ball.radius; y += 2) {
@@ -154,7 +187,7 @@ Seen seen(const Ball& ball) {
         const double top = y + i / 2;
         Vec3 sum{};
         for (int s = 0; s < kAcross * kAcross; ++s) {
-          const eval::Point& place = all.fine.points.emplace_back(
+          const eval::Point& place = fine.points.emplace_back(
               ball.at(left + (s % kAcross + 0.5) / kAcross, top + (s / kAcross + 0.5) / kAcross));
           const Vec3 normal =
               ball.map == nullptr ? place.n : bent(place, ball.map->at(place.uv[0][0], place.uv[0][1], 0));
@@ -164,8 +197,10 @@ Seen seen(const Ball& ball) {
         all.quads.points.push_back(mean);
         mean.n = unit(sum);
       }
+      if (fine.points.size() >= kAtOnce) drawFine(off, fine, all);
     }
   }
+  if (!fine.points.empty()) drawFine(off, fine, all);
   return all;
 }
 
@@ -199,7 +234,9 @@ std::vector<Bumpy> bumpyMaterials() {
   };
 }
 
-Aliasing aliasing(const Bumpy& material, double distance) {
+namespace {
+
+Aliasing measured(const Bumpy& material, double distance) {
   const Drawn off(material, Way::Without);
   const Drawn on(material, Way::With);
   const Drawn lobes(material, Way::Lobes);
@@ -213,20 +250,17 @@ Aliasing aliasing(const Bumpy& material, double distance) {
   Aliasing sum;
   size_t count = 0;
   for (const Ball& ball : balls) {
-    const Seen all = seen(ball);
-    const std::vector<double> exact = off.at(all.fine);
+    const Seen all = seen(ball, off);
     const std::vector<double> without = off.at(all.quads);
     const std::vector<double> with = on.at(all.quads);
     Points by_footprint = all.quads;
     by_footprint.lod = 0;
     const std::vector<double> spread = lobes.at(material.mapped ? by_footprint : all.quads);
-    std::vector<std::vector<double>> wider;
-    for (double roughness = 0.1; roughness < 1; roughness *= 1.08)
-      wider.push_back(off.at(all.means, material.roughness, roughness));
+    std::vector<double> roughnesses;
+    for (double roughness = 0.1; roughness < 1; roughness *= 1.08) roughnesses.push_back(roughness);
+    const std::vector<std::vector<double>> wider = off.at(all.means, material.roughness, roughnesses);
     for (size_t i = 0; i < with.size(); ++i) {
-      double mean = 0;
-      for (int s = 0; s < kAcross * kAcross; ++s) mean += exact[i * kAcross * kAcross + s];
-      const double right = shown(mean / (kAcross * kAcross));
+      const double right = shown(all.exact[i]);
       const auto error = [&](double radiance) { return std::pow(shown(radiance) - right, 2); };
       double best = error(wider[0][i]);
       for (const std::vector<double>& width : wider) best = std::min(best, error(width[i]));
@@ -240,6 +274,15 @@ Aliasing aliasing(const Bumpy& material, double distance) {
   for (double* error : {&sum.without, &sum.with, &sum.lobes, &sum.best})
     *error = std::sqrt(*error / static_cast<double>(count));
   return sum;
+}
+
+}  // namespace
+
+const Aliasing& aliasing(const Bumpy& material, double distance) {
+  static std::map<std::pair<std::string, double>, Aliasing> known;
+  const auto [at, is_new] = known.try_emplace({material.name, distance});
+  if (is_new) at->second = measured(material, distance);
+  return at->second;
 }
 
 std::array<double, 2> flatBrightness(const Bumpy& material, Way way) {
@@ -273,7 +316,7 @@ std::string antialiasingTable() {
       "|---|---|---|---|---|---|---|---|\n";
   for (const Bumpy& material : bumpyMaterials()) {
     for (const double distance : distancesOf(material)) {
-      const Aliasing errors = aliasing(material, distance);
+      const Aliasing& errors = aliasing(material, distance);
       const auto part = [&](double error) { return fmt::format("{:.0f} %", 100 * error / errors.without); };
       text += fmt::format("| {} | {} | {:.4f} | {:.4f} | {} |", material.name, distance, errors.without,
                           errors.with, part(errors.with));

@@ -29,7 +29,8 @@ enum class Way { Without, With, Lobes };
 struct Aliasing {
   double without = 0, with = 0, lobes = 0, best = 0;
 };
-Aliasing aliasing(const Bumpy& material, double distance);
+/// Takes a second for the first who asks.
+const Aliasing& aliasing(const Bumpy& material, double distance);
 
 /// How bright pixels without any change of the normal are with the switch, over without it: the least and the
 /// most of them.

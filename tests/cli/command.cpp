@@ -128,27 +128,6 @@ nlohmann::json Workplace::manifest(const std::string& folder) const {
   return json;
 }
 
-std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& files,
-                                        const std::string& schema) {
-  constexpr int kNoLibrary = 77;
-  constexpr int kNoProgram = 127;
-  static bool absent = false;
-  if (absent) return std::nullopt;
-  const auto quoted = [](const std::filesystem::path& path) { return "'" + path.string() + "' "; };
-  std::string command = "python3 " + quoted(sourceFolder() / "tests/cli/validate_manifest.py") +
-                        quoted(sourceFolder() / "docs" / (schema + ".schema.json"));
-  for (const std::filesystem::path& file : files) command += quoted(file);
-  FILE* pipe = popen((command + "2>&1").c_str(), "r");
-  if (pipe == nullptr) return std::nullopt;
-  std::string said;
-  for (int c = fgetc(pipe); c != EOF; c = fgetc(pipe)) said += static_cast<char>(c);
-  const int status = pclose(pipe);
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-  absent = code == kNoLibrary || code == kNoProgram;
-  if (absent) return std::nullopt;
-  return code != 0 && said.empty() ? "the validator failed" : said;
-}
-
 std::string example(const std::string& name) { return (sourceFolder() / "examples" / name).string(); }
 
 std::string gltfOf(const std::vector<std::string>& materials) {

@@ -4,8 +4,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include "support/cases.h"
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/resource.h>
+#endif
 
 namespace {
 
@@ -20,11 +24,37 @@ void findChecks() {
 #endif
 }
 
+#if defined(__unix__) || defined(__APPLE__)
+/// Seconds of all cores, of this process and of those that it has started and waited for.
+double cpuSeconds() {
+  double sum = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+      sum += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return sum;
+}
+
+/// Each test's processor time, in the file of --gtest_output: a busy machine does not change it much.
+class CpuTime : public testing::EmptyTestEventListener {
+  void OnTestStart(const testing::TestInfo&) override { begin_ = cpuSeconds(); }
+  void OnTestEnd(const testing::TestInfo&) override {
+    testing::Test::RecordProperty("cpu_seconds", std::to_string(cpuSeconds() - begin_));
+  }
+  double begin_ = 0;
+};
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   findChecks();
+#if defined(__unix__) || defined(__APPLE__)
+  testing::UnitTest::GetInstance()->listeners().Append(new CpuTime);
+#endif
   if (argc > 1) {  // a misspelt flag would otherwise run everything
     std::fprintf(stderr, "unknown argument '%s'\n", argv[1]);
     return 2;
