@@ -92,10 +92,57 @@ TEST(Search, GoesOnFromWhereNumbersAreFitted) {
   };
   const auto all = [](const std::string& word) { return word; };
   // Two of them are too much without the fit.
-  const std::vector<Tried> found = search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure, refit);
+  const std::vector<Tried> found = search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure, {refit});
   EXPECT_EQ(front(found).back().words, (Words{"a", "b", "c", "scale:x"}));
   for (const Tried& one : search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure))
     EXPECT_LT(one.words.size(), 3U);
+}
+
+/// A word that makes no other shader is not measured beside others, nor one by one.
+TEST(Search, OfManyIdleWordsThoseAreMeasuredThatDoSomething) {
+  Words words{"first"};
+  for (char c = 'a'; c <= 'z'; ++c) words.push_back(std::string("idle:") + c);
+  const auto costOf = [](const Words& set) {
+    const auto has = [&](const char* word) { return std::find(set.begin(), set.end(), word) != set.end(); };
+    return 100.0 - (has("first") ? 10 : 0) - (has("first") && has("idle:k") ? 30 : 0);
+  };
+  size_t pairs = 0, asked = 0;
+  const Measure measure = [&](const std::vector<Words>& sets) {
+    std::vector<std::optional<Tried>> result;
+    for (const Words& set : sets) {
+      pairs += set.size() == 2 ? 1 : 0;
+      result.push_back(Tried{set, costOf(set), costOf(set) < 100 ? 0.3 : 0.0});
+    }
+    return result;
+  };
+  const Same same = [&](const Words& a, const Words& b) {
+    ++asked;
+    return costOf(a) == costOf(b);
+  };
+  const auto all = [](const std::string& word) { return word; };
+  EXPECT_EQ(front(search({{}, 100, 0}, words, all, {10, 24, 10}, measure, {{}, same})).back().words,
+            (Words{"first", "idle:k"}));
+  EXPECT_EQ(pairs, 1U);
+  EXPECT_LT(asked, 20U) << "halves are asked for, not words";
+}
+
+/// Only the sets that would be levels lose needless words.
+TEST(Search, WhatIsNoLevelIsNotMadeBetter) {
+  const auto run = [](const Choose& choose, size_t& measured) {
+    const World world;
+    Words words;
+    for (const auto& [word, ignored] : world.words) words.push_back(word);
+    const std::vector<Tried> all =
+        search(*world({}), words, subjectOf, {10, 24, 10},
+               [&](const std::vector<Words>& sets) { return world.all(sets); }, {{}, {}, choose});
+    measured = world.measured;
+    return front(all);
+  };
+  size_t of_all = 0, of_last = 0;
+  const std::vector<Tried> best = run({}, of_all);
+  const auto last = [](const std::vector<Tried>& front) { return std::vector<size_t>{0, front.size() - 1}; };
+  EXPECT_EQ(run(last, of_last).back().words, best.back().words);
+  EXPECT_LT(of_last, of_all);
 }
 
 TEST(Search, NoSetIsMeasuredTwiceAndNoneHasTwoWordsForOneThing) {

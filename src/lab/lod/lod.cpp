@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "cost/cost.h"
@@ -248,13 +249,20 @@ private:
     for (size_t i = 0; i < sets.size(); i += together) {
       const auto begin = sets.begin() + static_cast<ptrdiff_t>(i);
       const auto end = begin + static_cast<ptrdiff_t>(std::min(together, sets.size() - i));
-      for (std::optional<lod::Tried>& one : subject.measure({begin, end})) all.push_back(std::move(one));
+      for (std::optional<lod::Tried>& one : subject.measure({begin, end}, true))
+        all.push_back(std::move(one));
       if (lod_.step) lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered()});
     }
     return all;
   }
 
-  /// Everything that is worth to be tried, then the best of it with a few numbers fitted.
+  std::vector<size_t> chosen(const std::vector<lod::Tried>& best) const {
+    if (!lod_.errors.empty()) return lod::byError(best, lod_.errors);
+    if (!lod_.costs.empty()) return lod::byCost(best, lod_.costs);
+    return lod::byCount(best, lod_.levels, lod_.most_error);
+  }
+
+  /// Everything that is worth to be tried, and the best of it.
   void search(LodMaterial& subject, const lod::Tried& exact, LodChain& made) const {
     const lod::Measure measure = [&](const std::vector<lod::Words>& sets) {
       return inBatches(subject, sets, made.found);
@@ -263,19 +271,15 @@ private:
     lod::Bounds bounds;
     bounds.most_error = 2 * (lod_.errors.empty() ? lod_.most_error : lod_.errors.back());
     if (!lod_.costs.empty()) bounds.most_error = 100;
-    const lod::Refit refit = [&](const lod::Words& words) { return subject.fitted(words); };
-    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure, refit);
-    std::vector<lod::Words> fitted;
-    for (const lod::Tried& one : lod::front(made.tried)) {
-      constexpr double kWorthIt = 0.05;
-      if (one.error < kWorthIt) continue;
-      if (std::optional<lod::Words> words = subject.fitted(one.words)) fitted.push_back(std::move(*words));
-    }
-    for (const std::optional<lod::Tried>& one : measure(fitted)) {
-      if (one) made.tried.push_back(*one);
-    }
+    lod::Advice advice;
+    advice.refit = [&](const lod::Words& words) { return subject.fitted(words); };
+    advice.same = [&](const lod::Words& a, const lod::Words& b) { return subject.same(a, b); };
+    advice.choose = [&](const std::vector<lod::Tried>& front) { return chosen(front); };
+    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure, advice);
     // The search is by small pictures; levels are chosen by those of the size that was asked for.
-    for (lod::Tried& one : lod::front(made.tried)) {
+    const std::vector<lod::Tried> front = lod::front(made.tried);
+    for (const size_t place : around(chosen(front), front.size())) {
+      lod::Tried one = front[place];
       const Result<LevelFigures> seen = subject.seen(one.words, false);
       if (!seen) continue;
       one.error = seen->error.delta_e;
@@ -285,10 +289,16 @@ private:
     made.found.measured = made.tried.size();
   }
 
-  std::vector<size_t> chosen(const std::vector<lod::Tried>& best) const {
-    if (!lod_.errors.empty()) return lod::byError(best, lod_.errors);
-    if (!lod_.costs.empty()) return lod::byCost(best, lod_.costs);
-    return lod::byCount(best, lod_.levels, lod_.most_error);
+  /// Places, and those beside them.
+  static std::set<size_t> around(const std::vector<size_t>& places, size_t count) {
+    constexpr size_t kBeside = 2;
+    std::set<size_t> all;
+    for (const size_t place : places) {
+      for (size_t i = place - std::min(place, kBeside); i <= std::min(place + kBeside, count - 1); ++i)
+        all.insert(i);
+    }
+    all.insert(0);
+    return all;
   }
 
   /// Level `k` of `count` with the exact one, from the largest size to the smallest by equal factors.

@@ -89,6 +89,13 @@ Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options
   return cost::Subject{"level", std::move(data.spirv[0]), std::move(data.spirv[1])};
 }
 
+Key codeOf(const cost::Subject& subject) {
+  KeyBuilder key;
+  for (const cost::Spirv* words : {&subject.vertex, &subject.fragment})
+    key.text({reinterpret_cast<const char*>(words->data()), words->size() * sizeof(uint32_t)});
+  return key.finish();
+}
+
 }  // namespace
 
 LodMaterial::LodMaterial(const Given& given, uint32_t size)
@@ -308,7 +315,10 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
     }
   }
   const std::vector<std::optional<lod::Tried>> measured = measure({{}});
-  if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
+  if (measured[0]) {
+    exact_vertex_ = figures({}).vertex_cycles;
+    exact_cost_ = measured[0]->cost;
+  }
   if (!measured[0]) return fail("cost-unknown", {}, "the material's own shader could not be measured");
   return *measured[0];
 }
@@ -355,28 +365,56 @@ Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Modul
     }
     return figures;
   }
+  // Sets that differ in what the preshader does to numbers have one code.
   std::vector<cost::Subject> subjects;
+  std::vector<Key> codes, asked;
   for (const ir::Module& module : modules) {
     Result<cost::Subject> subject = subjectOf(module, given_.options);
     if (!subject) return tl::make_unexpected(std::move(subject.error()));
+    codes.push_back(codeOf(*subject));
+    const bool known = !quarters && (statistics_.contains(codes.back()) ||
+                                     std::find(asked.begin(), asked.end(), codes.back()) != asked.end());
+    if (known) continue;
+    asked.push_back(codes.back());
     subjects.push_back(std::move(*subject));
   }
   const cost::Measurement measured = compiler_.measure(subjects, quarters);
   if (!measured.driver.empty()) driver_ = measured.driver;
-  for (size_t i = 0; i < figures.size(); ++i) {
+  for (size_t i = 0; i < asked.size(); ++i) {
     const cost::Outcome& outcome = measured.outcomes[i];
     if (!outcome.statistics) return fail("cost-unknown", {}, "no cost: " + outcome.problem);
-    figures[i].instructions = outcome.statistics->instructions;
-    figures[i].cycles = outcome.statistics->inverse_throughput;
-    if (quarters)
-      figures[i].quarter_cycles = figures[i].cycles + cost::quarterRateCycles(outcome.disassembly);
-    figures[i].vertex_cycles = outcome.statistics->vertex_inverse_throughput;
+    statistics_.insert_or_assign(asked[i], *outcome.statistics);
+    // With the disassembly all are asked for, in their order.
+    if (quarters) figures[i].quarter_cycles = cost::quarterRateCycles(outcome.disassembly);
+  }
+  for (size_t i = 0; i < figures.size(); ++i) {
+    const cost::Statistics& statistics = statistics_.at(codes[i]);
+    figures[i].instructions = statistics.instructions;
+    figures[i].cycles = statistics.inverse_throughput;
+    if (quarters) figures[i].quarter_cycles += figures[i].cycles;
+    figures[i].vertex_cycles = statistics.vertex_inverse_throughput;
     figures[i].cost = costOf(figures[i]);
   }
   return figures;
 }
 
-std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lod::Words>& sets) {
+const std::string& LodMaterial::idOf(const lod::Words& words) {
+  if (const auto measured = ids_.find(words); measured != ids_.end()) return measured->second;
+  const auto [known, fresh] = shaders_.try_emplace(words);
+  if (!fresh) return known->second;
+  if (std::optional<std::string> kept = memory_.shader(words)) return known->second = std::move(*kept);
+  if (const Result<ir::Module> made = module(words)) known->second = shaderId(*made, given_.language);
+  memory_.keepShader(words, known->second);
+  return known->second;
+}
+
+bool LodMaterial::same(const lod::Words& a, const lod::Words& b) {
+  const std::string& id = idOf(a);
+  return !id.empty() && id == idOf(b);
+}
+
+std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lod::Words>& sets,
+                                                            bool cheaper) {
   std::vector<ir::Module> fresh;
   std::vector<bool> remembered(sets.size(), false);
   std::vector<std::pair<std::string, const lod::Words*>> of_fresh;
@@ -396,14 +434,15 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
       continue;
     }
     std::string id = shaderId(*made, given_.language);
-    const bool known = figures_.contains(id) || std::any_of(of_fresh.begin(), of_fresh.end(),
-                                                            [&](const auto& one) { return one.first == id; });
+    const bool known =
+        figures_.contains(id) || dear_.contains(id) ||
+        std::any_of(of_fresh.begin(), of_fresh.end(), [&](const auto& one) { return one.first == id; });
     ids_[set] = id;
     if (known) continue;
     of_fresh.emplace_back(std::move(id), &set);
     fresh.push_back(std::move(*made));
   }
-  // The driver compiles in a process of its own: the pictures are made beside it.
+  // The driver compiles in a process of its own: what pictures need is made beside it.
   const std::launch how = given_.options.jobs == 1 ? std::launch::deferred : kBeside;
   std::future<Result<std::vector<LevelFigures>>> costing =
       std::async(how, [&] { return costs(fresh, false); });
@@ -415,16 +454,18 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     Messages said_before;
     if (auto one = shadings(*of_fresh[i].second, said_before)) made[i] = std::move(*one);
   }
-  inParallel(fresh.size(), [&](size_t i) {
-    if (!made[i]) return;
+  const Result<std::vector<LevelFigures>> costs = costing.get();
+  const auto dear = [&](size_t i) { return cheaper && exact_cost_ && (*costs)[i].cost > *exact_cost_; };
+  inParallel(costs ? fresh.size() : 0, [&](size_t i) {
+    if (!made[i] || dear(i)) return;
     const bool triangles = atVertices(*of_fresh[i].second);
     const std::vector<preview::Shot> shot = shotsOf(*made[i], kSearched, kSearchedGrid, triangles);
     compare(small_[triangles], shot, seen[i].error, seen[i].error_on_geometry, false);
     made[i].reset();
     drawn[i] = 1;
   });
-  const Result<std::vector<LevelFigures>> costs = costing.get();
   for (size_t i = 0; costs && i < fresh.size(); ++i) {
+    if (dear(i)) dear_.insert(of_fresh[i].first);
     if (drawn[i] == 0) continue;
     LevelFigures& figures = figures_.emplace(of_fresh[i].first, (*costs)[i]).first->second;
     figures.error = seen[i].error;
@@ -434,7 +475,10 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
   for (size_t i = 0; i < sets.size(); ++i) {
     const auto id = ids_.find(sets[i]);
     const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
-    if (found == figures_.end()) continue;
+    if (found == figures_.end()) {
+      if (id != ids_.end() && dear_.contains(id->second)) memory_.keep(sets[i], {});
+      continue;
+    }
     if (!remembered[i]) memory_.keep(sets[i], {id->second, found->second});
     tried[i] = lod::Tried{sets[i], found->second.cost, found->second.error.delta_e};
   }
@@ -517,6 +561,36 @@ std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<doubl
   return b;
 }
 
+/// The step of Levenberg and Marquardt's least squares.
+std::vector<double> stepOf(const std::vector<std::vector<double>>& slopes, const std::vector<double>& now,
+                           const std::vector<double>& wanted, double damping) {
+  const size_t n = slopes.size();
+  std::vector<std::vector<double>> normal(n, std::vector<double>(n, 0.0));
+  std::vector<double> right(n, 0.0);
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      for (size_t k = 0; k < now.size(); ++k) normal[i][j] += slopes[i][k] * slopes[j][k];
+      normal[j][i] = normal[i][j];
+    }
+    for (size_t k = 0; k < now.size(); ++k) right[i] += slopes[i][k] * (wanted[k] - now[k]);
+    normal[i][i] *= 1 + damping;
+  }
+  return solved(normal, right);
+}
+
+/// Broyden's: makes slopes those that a step has shown, along it.
+void learnSlopes(const std::vector<double>& step, const std::vector<double>& before,
+                 const std::vector<double>& after, std::vector<std::vector<double>>& slopes) {
+  double length = 0;
+  for (const double x : step) length += x * x;
+  if (!(length > 0)) return;
+  for (size_t k = 0; k < before.size(); ++k) {
+    double rest = after[k] - before[k];
+    for (size_t i = 0; i < step.size(); ++i) rest -= slopes[i][k] * step[i];
+    for (size_t i = 0; i < step.size(); ++i) slopes[i][k] += rest * step[i] / length;
+  }
+}
+
 }  // namespace
 
 /// What the words that scale numbers say of these; 1 where they say nothing.
@@ -538,9 +612,10 @@ std::optional<lod::Words> LodMaterial::fitted(const lod::Words& words) const {
   return made;
 }
 
-/// Levenberg and Marquardt's least squares over the pictures' colours, with differences for derivatives.
+/// Least squares over the pictures' colours. A picture for each number gives the slopes, which hold,
+/// learning, for a few steps.
 std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 2, kSteps = 3;
   constexpr double kStep = 0.02;
   constexpr double kLeast = 0.2;
   constexpr double kMost = 3;
@@ -563,7 +638,8 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
   if (now.size() != wanted.size()) return std::nullopt;
   double error = squares(now, wanted);
   double damping = 1e-2;
-  for (int round = 0; round < kRounds; ++round) {
+  bool done = false;
+  for (int round = 0; round < kRounds && !done; ++round) {
     std::vector<std::vector<double>> slopes;
     for (size_t i = 0; i < scales.size(); ++i) {
       std::vector<double> moved = scales;
@@ -573,31 +649,27 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
       for (size_t k = 0; k < slope.size(); ++k) slope[k] = (slope[k] - now[k]) / (moved[i] - scales[i]);
       slopes.push_back(std::move(slope));
     }
-    std::vector<std::vector<double>> normal(scales.size(), std::vector<double>(scales.size(), 0.0));
-    std::vector<double> right(scales.size(), 0.0);
-    for (size_t i = 0; i < scales.size(); ++i) {
-      for (size_t j = 0; j < scales.size(); ++j) {
-        for (size_t k = 0; k < now.size(); ++k) normal[i][j] += slopes[i][k] * slopes[j][k];
+    for (int taken = 0; taken < kSteps && !done; ++taken) {
+      std::vector<double> step = stepOf(slopes, now, wanted, damping);
+      std::vector<double> next = scales;
+      for (size_t i = 0; i < next.size(); ++i) {
+        next[i] = std::clamp(next[i] + step[i], kLeast, std::min(kMost, 1 / parameters[i].value));
+        step[i] = next[i] - scales[i];
       }
-      for (size_t k = 0; k < now.size(); ++k) right[i] += slopes[i][k] * (wanted[k] - now[k]);
-      normal[i][i] *= 1 + damping;
+      std::vector<double> then = labsWith(next);
+      if (then.size() != now.size()) return std::nullopt;
+      learnSlopes(step, now, then, slopes);
+      const double with = squares(then, wanted);
+      if (!(with < error)) {
+        damping *= 10;
+        continue;
+      }
+      done = with > 0.999 * error;
+      scales = std::move(next);
+      now = std::move(then);
+      error = with;
+      damping *= 0.3;
     }
-    const std::vector<double> step = solved(normal, right);
-    std::vector<double> next = scales;
-    for (size_t i = 0; i < next.size(); ++i)
-      next[i] = std::clamp(next[i] + step[i], kLeast, std::min(kMost, 1 / parameters[i].value));
-    std::vector<double> then = labsWith(next);
-    const double with = then.size() == now.size() ? squares(then, wanted) : error;
-    if (!(with < error)) {
-      damping *= 10;
-      continue;
-    }
-    const bool done = with > 0.999 * error;
-    scales = next;
-    now = std::move(then);
-    error = with;
-    damping *= 0.3;
-    if (done) break;
   }
   lod::Words result = words;
   for (size_t i = 0; i < parameters.size();) {

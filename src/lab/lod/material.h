@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -49,8 +50,11 @@ public:
   Result<lod::Tried> open(Messages& messages);
   /// The words that change the material's graph, those for its textures' means among them.
   lod::Words words() const;
-  /// For lod::search(). A set that makes no shader, or one with other textures, is none.
-  std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets);
+  /// For lod::search(). A set that makes no shader, or one with other textures, is none; with `cheaper` one
+  /// that costs more than the exact shader is none, either, and nobody draws it.
+  std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets, bool cheaper = false);
+  /// Whether two sets make one shader; false where one of them makes none.
+  bool same(const lod::Words& a, const lod::Words& b);
   /// The same words with a few numbers of the material fitted again to the exact pictures;
   /// nothing where that cannot be, or changes nothing.
   std::optional<lod::Words> fitted(const lod::Words& words) const;
@@ -97,6 +101,7 @@ private:
   std::vector<preview::Shot> shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
                                      uint32_t grid, bool triangles) const;
   double costOf(const LevelFigures& figures) const;
+  const std::string& idOf(const lod::Words& words);
   static std::vector<double> scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters);
   std::vector<Parameter> fittable(const lod::Words& words) const;
   std::optional<std::vector<preview::Shot>> shotsWith(const std::vector<preview::Shading>& shadings,
@@ -119,12 +124,16 @@ private:
       coverages_;
   std::string exact_graph_;
   std::optional<ir::Module> exact_module_;
-  lod::Words means_;              ///< words for textures that have images
-  std::set<std::string> absent_;  ///< textures that have none: nothing is known of them
-  std::map<lod::Words, std::string> ids_;
+  lod::Words means_;                             ///< words for textures that have images
+  std::set<std::string> absent_;                 ///< textures that have none: nothing is known of them
+  std::map<lod::Words, std::string> ids_;        ///< of what was measured
+  std::map<lod::Words, std::string> shaders_;    ///< of what was asked for; empty where there is none
   std::map<std::string, LevelFigures> figures_;  ///< by shader
+  std::map<Key, cost::Statistics> statistics_;   ///< of code without its disassembly, by the code
   std::string driver_;
   cost::Driver compiler_{cost::kFamilies[0]};
+  std::set<std::string> dear_;            ///< shaders that cost more than the exact one
+  std::optional<double> exact_cost_;      ///< once it is measured
   std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
   lod::Memory memory_;
   size_t remembered_ = 0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <span>
 
 namespace lacquer::lod {
 
@@ -12,14 +14,19 @@ namespace {
 /// A difference that nobody sees, and below which errors are not compared.
 constexpr double kUnseen = 0.01;
 
-/// Below this difference no numbers are fitted.
-constexpr double kWorthFitting = 0.1;
+/// Below this difference no numbers are fitted: of a set that grows, and of one that would be a level.
+constexpr double kWorthFitting = 0.1, kLevelWorthFitting = 0.05;
+
+/// How often levels are chosen anew of what was found around those that were chosen.
+constexpr size_t kChoices = 4;
+/// Sets of a front behind the last level whose needless words are looked for.
+constexpr size_t kBeyond = 3;
 
 class Searching {
 public:
   Searching(const Words& words, const Subject& subject, const Bounds& bounds, const Measure& measure,
-            const Refit& refit)
-      : words_(words), subject_(subject), bounds_(bounds), measure_(measure), refit_(refit) {}
+            const Advice& advice)
+      : words_(words), subject_(subject), bounds_(bounds), measure_(measure), advice_(advice) {}
 
   std::vector<Tried> run(const Tried& exact) {
     all_.push_back(exact);
@@ -30,9 +37,9 @@ public:
     for (size_t step = 0; step < bounds_.steps; ++step) {
       std::optional<Tried> next = grow(from);
       if (!next) break;
-      from = refitted(std::move(*next));
+      from = refitted(std::move(*next), kWorthFitting);
     }
-    shrink();
+    sharpen();
     return std::move(all_);
   }
 
@@ -69,9 +76,9 @@ private:
   }
 
   /// The same with numbers fitted to it, where that looks better at no cost.
-  Tried refitted(Tried one) {
-    if (!refit_ || one.error < kWorthFitting) return one;
-    const std::optional<Words> words = refit_(one.words);
+  Tried refitted(Tried one, double worth) {
+    if (!advice_.refit || one.error < worth) return one;
+    const std::optional<Words> words = advice_.refit(one.words);
     if (!words) return one;
     const std::optional<Tried> found = measured({*words})[0];
     return found && found->cost <= one.cost && found->error < one.error ? *found : one;
@@ -111,8 +118,7 @@ private:
       sets.push_back(from.words);
       sets.back().push_back(*word);
     }
-    for (const std::string& word : idle_) {
-      if (effects_.contains(word) || !fits(from.words, word)) continue;
+    for (const std::string& word : awake(from.words)) {
       sets.push_back(from.words);
       sets.back().push_back(word);
     }
@@ -142,28 +148,96 @@ private:
     }
   }
 
-  /// Words of the best sets may have become needless: each is left out, and stays out where nothing is lost
-  /// by that.
-  void shrink() {
-    for (Tried one : front(all_)) {
-      for (size_t i = 0; i < one.words.size();) {
-        Words fewer = one.words;
-        fewer.erase(fewer.begin() + static_cast<ptrdiff_t>(i));
-        const std::optional<Tried> found = measured({fewer})[0];
-        if (found && found->cost <= one.cost && found->error <= one.error) {
-          one = *found;
-        } else {
-          ++i;
-        }
-      }
+  /// Of the words that do nothing alone, those that may do something beside these.
+  Words awake(const Words& words) const {
+    Words idle, found;
+    for (const std::string& word : idle_) {
+      if (!effects_.contains(word) && fits(words, word)) idle.push_back(word);
     }
+    if (!advice_.same) return idle;
+    while (!idle.empty()) {
+      Words together, others;
+      for (const std::string& word : idle) (fits(together, word) ? together : others).push_back(word);
+      wake(words, together, found);
+      idle = std::move(others);
+    }
+    return found;
+  }
+
+  /// Where many words together make the shader that there is without them, none of them does anything.
+  void wake(const Words& words, std::span<const std::string> idle, Words& found) const {
+    Words with = words;
+    with.insert(with.end(), idle.begin(), idle.end());
+    std::sort(with.begin(), with.end());
+    if (advice_.same(words, with)) return;
+    if (idle.size() == 1) return found.push_back(idle[0]);
+    wake(words, idle.first(idle.size() / 2), found);
+    wake(words, idle.subspan(idle.size() / 2), found);
+  }
+
+  /// Makes those better that would be levels, and chooses again.
+  void sharpen() {
+    std::set<Words> done;
+    for (size_t round = 0; round < (advice_.choose ? kChoices : 1); ++round) {
+      const std::vector<Tried> best = front(all_);
+      std::set<size_t> places;
+      // Without needless words what is cheaper may be good enough, most of all beyond the last level.
+      const std::vector<size_t> levels = advice_.choose ? advice_.choose(best) : std::vector<size_t>();
+      for (const size_t level : levels) {
+        const size_t beyond = round > 0 ? 0 : level == levels.back() ? kBeyond : 1;
+        for (size_t i = level; i <= level + beyond && i < best.size(); ++i) places.insert(i);
+      }
+      for (size_t i = 1; !advice_.choose && i < best.size(); ++i) places.insert(i);
+      places.erase(0);
+      const size_t before = done.size();
+      for (const size_t place : places) {
+        if (!done.insert(best[place].words).second) continue;
+        Tried one = shrunk(best[place], false);
+        if (!advice_.choose) continue;
+        done.insert(one.words);
+        one = refitted(std::move(one), kLevelWorthFitting);
+        done.insert(one.words);
+        done.insert(shrunk(std::move(one), true).words);
+      }
+      if (done.size() == before) return;
+    }
+  }
+
+  /// Words may have become needless: those without which nothing is lost leave the set, one after the other;
+  /// of numbers that were fitted, or of all the others.
+  Tried shrunk(Tried one, bool fitted) {
+    Words needless;
+    for (const std::string& word : one.words) {
+      if (word.starts_with("scale:") == fitted) needless.push_back(word);
+    }
+    while (!needless.empty()) {
+      std::vector<Words> sets;
+      for (const std::string& word : needless) {
+        sets.push_back(one.words);
+        std::erase(sets.back(), word);
+      }
+      const std::vector<std::optional<Tried>> found = measured(std::move(sets));
+      Words still;
+      std::optional<Tried> best;
+      for (size_t i = 0; i < found.size(); ++i) {
+        if (!found[i] || found[i]->cost > one.cost || found[i]->error > one.error) continue;
+        if (best)
+          still.push_back(needless[i]);
+        else
+          best = found[i];
+      }
+      if (!best) break;
+      one = std::move(*best);
+      needless = std::move(still);
+    }
+    return one;
   }
 
   const Words& words_;
   const Subject& subject_;
   const Bounds& bounds_;
   const Measure& measure_;
-  const Refit& refit_;
+  const Advice& advice_;
   Words idle_;  ///< words that do nothing alone
   std::vector<Tried> all_;
   std::map<Words, std::optional<Tried>> known_;
@@ -173,8 +247,8 @@ private:
 }  // namespace
 
 std::vector<Tried> search(const Tried& exact, const Words& words, const Subject& subject,
-                          const Bounds& bounds, const Measure& measure, const Refit& refit) {
-  return Searching(words, subject, bounds, measure, refit).run(exact);
+                          const Bounds& bounds, const Measure& measure, const Advice& advice) {
+  return Searching(words, subject, bounds, measure, advice).run(exact);
 }
 
 std::vector<Tried> front(std::vector<Tried> all) {

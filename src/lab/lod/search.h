@@ -24,6 +24,17 @@ using Measure = std::function<std::vector<std::optional<Tried>>(const std::vecto
 using Refit = std::function<std::optional<Words>(const Words& words)>;
 /// What two words cannot both be in a set for.
 using Subject = std::function<std::string(const std::string& word)>;
+/// Whether two sets make one shader.
+using Same = std::function<bool(const Words& a, const Words& b)>;
+/// The places of a front that would be levels.
+using Choose = std::function<std::vector<size_t>(const std::vector<Tried>& front)>;
+
+/// What a search may ask for beside measurements.
+struct Advice {
+  Refit refit{};    ///< without it no numbers are fitted
+  Same same{};      ///< without it words that do nothing beside others are measured, too
+  Choose choose{};  ///< without it all of the front may be levels
+};
 
 struct Bounds {
   double most_error = 4;  ///< what looks worse is not simplified further
@@ -33,10 +44,11 @@ struct Bounds {
 
 /// From the exact shader on, `exact`, to simpler ones: all that was tried, in the order in which it was. Each
 /// word is tried alone; then the sets grow by the words that promise the most cycles for the least error,
-/// from what they have done alone, each set measured, and go on from where `refit` brings them. Words that do
-/// nothing alone are tried again beside others.
+/// from what they have done alone, each set measured, and go on from where numbers are fitted. Words that do
+/// nothing alone are tried again beside others. In the end needless words leave the sets that would be
+/// levels, whose numbers are fitted again.
 std::vector<Tried> search(const Tried& exact, const Words& words, const Subject& subject,
-                          const Bounds& bounds, const Measure& measure, const Refit& refit = {});
+                          const Bounds& bounds, const Measure& measure, const Advice& advice = {});
 
 /// Of these, by falling cost: the first, which is the exact shader, and those cheaper ones that no other
 /// beats in both, of equal ones the first. Errors rise from one of them to the next.

@@ -51,6 +51,12 @@ std::optional<Found> Memory::found(const Words& words) const { return foundAs("l
 
 void Memory::keep(const Words& words, const Found& found) const { keepAs("level", words, found); }
 
+std::optional<std::string> Memory::shader(const Words& words) const { return load("shader", words); }
+
+void Memory::keepShader(const Words& words, const std::string& shader) const {
+  if (store_ != nullptr) store_->save(keyOf("shader", words), shader);
+}
+
 std::optional<Found> Memory::seen(const Words& words, bool flip) const {
   return foundAs(flip ? "seen-flip" : "seen", words);
 }

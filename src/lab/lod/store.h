@@ -37,6 +37,9 @@ public:
 
   std::optional<Found> found(const Words& words) const;
   void keep(const Words& words, const Found& found) const;
+  /// The shader that a set makes, empty where it makes none.
+  std::optional<std::string> shader(const Words& words) const;
+  void keepShader(const Words& words, const std::string& shader) const;
   /// By pictures of the whole size; with FLIP or without.
   std::optional<Found> seen(const Words& words, bool flip) const;
   void keepSeen(const Words& words, bool flip, const Found& seen) const;
