@@ -1,11 +1,14 @@
 # The library for WebAssembly, by Debian's emscripten: what there is in place of cmake/dependencies.cmake, and what is
 # left out. docs/web.md says what the module is.
 
-# Native only: the search for cheaper forms, compilers and validators, GPUs, costs, attacks, runs over folders with their
+# Native only: the search for cheaper forms but for what it counts by, compilers and validators, GPUs, costs, attacks, runs over folders with their
 # cache, the search for levels. Their callers are linked with web/absent/.
-set(LACQUER_ABSENT optimize check vulkan cost stress cache run lod view)
+set(LACQUER_ABSENT check vulkan cost stress cache run lod view)
 set(LACQUER_ABSENT_FILES lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/api/levels.cpp faces/c/exchange.cpp
     faces/c/findings.cpp)
+foreach(file approximate egraph extract facts fit optimize pattern points quotient ranges rounding rules safety)
+  list(APPEND LACQUER_ABSENT_FILES compile/optimize/${file}.cpp)
+endforeach()
 
 include(headers)
 # What emscripten's standard library of 2022 lacks, and loops without threads, come before the rest.
@@ -61,7 +64,7 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c answer api bake edit environment exchange gltf graph interface json lang manifest material materialx model mtlx photometry picture preview programs
+  foreach(folder c answer api bake edit environment exchange gltf graph interface json lang manifest material materialx model mtlx optimize photometry picture preview programs
           prove schedule setting shader structures support targets texture)
     target_compile_options(lacquer_${folder} PRIVATE -Oz)
   endforeach()

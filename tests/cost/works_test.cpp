@@ -58,6 +58,32 @@ TEST(Works, ACoatOfFactorZeroIsTheBase) {
   }
 }
 
+// By the driver's count, which may be another than the one that the search goes by.
+TEST(Works, AHigherLevelOfSearchIsNeverDearer) {
+  if (const std::string reason = cost::unavailable(); !reason.empty()) GTEST_SKIP() << reason;
+  for (const Work& work : kWorks) {
+    Options options;
+    options.targets = {Target::Spirv};
+    options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
+    options.ibl = work.ibl;
+    options.validate = false;
+    Messages messages;
+    const Scene scene = Scene::load(kRoot + "/bench/works/" + work.file, options, messages);
+    std::vector<cost::Subject> levels;
+    for (options.optimize = 0; options.optimize <= 2; ++options.optimize) {
+      Graph graph = scene.graph(0, scene.uses(0)[0], options, messages);
+      const Shader shader = graph.generate(options, messages);
+      ASSERT_TRUE(shader) << textOf(messages);
+      levels.push_back({work.name, shader.vertexSpirv(), shader.fragmentSpirv()});
+    }
+    const auto outcomes = cost::measure(levels, "navi21", false).outcomes;
+    for (size_t level = 1; level < levels.size(); ++level)
+      EXPECT_LE(outcomes[level].statistics->inverse_throughput,
+                outcomes[level - 1].statistics->inverse_throughput)
+          << work.name << ", level " << level;
+  }
+}
+
 class Cost : public testing::TestWithParam<bool> {};
 
 /// The works' direct SPIR-V on navi21, measured once in each mode: the same on every run (Driver).

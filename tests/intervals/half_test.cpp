@@ -63,9 +63,11 @@ std::vector<ir::Module> relaxedModules(const std::filesystem::path& file,
   return modules;
 }
 
-ir::Module relaxedWork(const passes::PipelineOptions& more) {
-  return relaxedModules(sourceFolder() / "bench/works/w1.gltf", more).at(0);
+std::string work(const std::string& name) {
+  return (sourceFolder() / "bench/works" / (name + ".gltf")).string();
 }
+
+ir::Module relaxedWork(const passes::PipelineOptions& more) { return relaxedModules(work("w1"), more).at(0); }
 
 /// A choice that takes a form, however many there are.
 passes::Choose takes(size_t form) {
@@ -147,10 +149,8 @@ TEST(Halves, AreSaid) {
 TEST(Halves, FormsKeepToTheBound) {
   const ir::Module module = relaxedWork({});
   ASSERT_TRUE(module.dag.anyRelaxed());
-  std::vector<double> gains;
-  const std::vector<ir::Module> forms = passes::halves(module, 0.05, gains);
+  const std::vector<ir::Module> forms = passes::halves(module, 0.05);
   ASSERT_GT(forms.size(), 2U);
-  ASSERT_EQ(gains.size(), forms.size());
   EXPECT_FALSE(forms[0].half);
   for (size_t i = 1; i < forms.size(); ++i) {
     std::vector<ir::ValueId> values;
@@ -177,6 +177,74 @@ TEST(Halves, AreLeftOutWhereTheyAreNotCheaper) {
     EXPECT_EQ(module.half->cycles, std::min(cycles, 100.0));
     EXPECT_EQ(module.half->by, "a driver");
     EXPECT_TRUE(module.dag.anyRelaxed());
+  }
+}
+
+passes::PipelineOptions searching() {
+  passes::PipelineOptions options;
+  options.optimize.level = 1;
+  options.half = true;
+  return options;
+}
+
+// The form that is the cheapest at 32 bits has not always the cheapest one of 16 bits.
+TEST(Halves, AreCountedOfEachFormOfASearch) {
+  const size_t plain_size = relaxedModules(work("c"), {}).at(0).dag.size();
+  passes::PipelineOptions options = searching();
+  options.choose = [&](std::span<const ir::Module> forms) -> std::optional<passes::Choice> {
+    const auto cycles = [&](const ir::Module& form) {
+      const bool plain = form.dag.size() == plain_size;
+      if (form.half) return plain ? 80.0 : 88.0;
+      return plain ? 100.0 : 90.0;
+    };
+    passes::Choice choice{0, "a driver", cycles(forms[0]), cycles(forms[0])};
+    for (size_t i = 1; i < forms.size(); ++i) {
+      if (cycles(forms[i]) < choice.cycles) choice.index = i, choice.cycles = cycles(forms[i]);
+    }
+    return choice;
+  };
+  const ir::Module module = relaxedModules(work("c"), options).at(0);
+  ASSERT_TRUE(module.half && module.optimized);
+  EXPECT_TRUE(module.half->used);
+  EXPECT_EQ(module.half->cycles, 80);
+  EXPECT_EQ(module.half->plain, 90);
+  EXPECT_EQ(module.optimized->cycles, 90);
+  EXPECT_EQ(module.optimized->plain, 100);
+  EXPECT_EQ(module.optimized->growth, 1);  // what is made is the plain form's
+}
+
+TEST(Halves, WithASearchAreNeverDearerThanEitherAlone) {
+  for (const char* name : {"w0", "a", "c"}) {
+    const ir::Module both = relaxedModules(work(name), searching()).at(0);
+    passes::PipelineOptions options = searching();
+    options.half = false;
+    const ir::Module searched = relaxedModules(work(name), options).at(0);
+    options = searching();
+    options.optimize.level = 0;
+    const ir::Module halved = relaxedModules(work(name), options).at(0);
+    ASSERT_TRUE(both.half && both.optimized && searched.optimized && halved.half) << name;
+    EXPECT_LE(both.half->cycles, searched.optimized->cycles) << name;
+    EXPECT_LE(both.half->cycles, halved.half->cycles) << name;
+    EXPECT_EQ(both.half->plain, both.optimized->cycles) << name;
+  }
+}
+
+TEST(Halves, WithoutEffectAreNoted) {
+  Options options;
+  options.targets = {Target::Spirv};
+  options.half = options.programs_model = true;
+  for (const double error : {1e-9, 0.05}) {
+    options.relaxed = error;
+    Messages messages;
+    const Scene scene = Scene::load(work("w2"), options, messages);
+    Graph graph = scene.graph(0, kUnusedAttributes, options, messages);
+    ASSERT_TRUE(graph);
+    const Shader shader = graph.generate(options, messages);
+    ASSERT_TRUE(shader);
+    const bool used = shader.reflection().half && shader.reflection().half->used;
+    const bool noted = std::any_of(messages.begin(), messages.end(),
+                                   [](const Message& message) { return message.code == "half-unused"; });
+    EXPECT_NE(used, noted) << error;
   }
 }
 

@@ -177,7 +177,8 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Setting
 }
 
 Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts& lights,
-                            const passes::OtherLayout& other, const Setting& setting) {
+                            const passes::OtherLayout& other, const Setting& setting,
+                            passes::Searched* searched = nullptr) {
   Result<ir::Module> module;
   {
     const StageTimer timer(setting.times, StageOfRun::Lower);
@@ -194,7 +195,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
                                             setting.options.binding == BindingModel::Bindless,
                                             setting.options.binding == BindingModel::Arrays,
                                             setting.options.static_samplers,
-                                            setting.options.half});
+                                            setting.options.half,
+                                            searched});
 }
 
 }  // namespace
@@ -266,7 +268,7 @@ Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, cons
 
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
                                         const passes::OtherLayout& other, const Setting& setting,
-                                        Structure& structure) {
+                                        Structure& structure, passes::Searched* searched) {
   structure.numbers = numbersOf(graph, setting.library);
   structure.lights = lights;
   structure.other = other;
@@ -280,7 +282,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   structure.facts = std::make_shared<StructureFacts>(factsOf(plain, setting));
   if (hasError(structure.diagnostics)) return std::nullopt;
   structure.program = programKey(plain, lights, setting);
-  Result<ir::Module> module = modulate(plain, lights, other, setting);
+  Result<ir::Module> module = modulate(plain, lights, other, setting, searched);
   if (!module) {
     structure.diagnostics.insert(structure.diagnostics.end(), module.error().begin(), module.error().end());
     return std::nullopt;
@@ -288,6 +290,8 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   const Diagnostics over = overLimits(*module, setting.options.targets);
   structure.diagnostics.insert(structure.diagnostics.end(), over.begin(), over.end());
   if (hasError(over)) return std::nullopt;
+  const Diagnostics half = aboutHalf(*module, setting.options);
+  structure.diagnostics.insert(structure.diagnostics.end(), half.begin(), half.end());
   structure.graph = graph::toJson(plain);
   // Places are those in the graph as it comes, which check() may have ordered, but not its parameters and
   // textures.

@@ -120,10 +120,10 @@ void addReader(const Structure& structure, passes::Readers& readers);
 Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting);
 
 /// The graph, its numbers replaced by others that the check accepts, lowered and through the passes. On an
-/// error, the reasons are in `structure.diagnostics`.
+/// error, the reasons are in `structure.diagnostics`. `searched`: PipelineOptions::searched.
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
                                         const passes::OtherLayout& other, const Setting& setting,
-                                        Structure& structure);
+                                        Structure& structure, passes::Searched* searched = nullptr);
 
 /// The graph without what belongs to one material: numbers that stay editable have values that the check
 /// accepts.

@@ -57,7 +57,15 @@ const Structure& Structures::of(const graph::Graph& graph, const passes::LightFa
   if ((entry.ready || load(key, entry)) && fits(entry.structure, graph)) return met(entry.structure);
   entry.structure = {};
   entry.structure.key = key;
-  std::optional<ir::Module> module = makeStructure(graph, lights, other, setting_, entry.structure);
+  const bool twice = setting_.options.optimize > 0 && setting_.options.fallback;
+  passes::Searched searched;
+  if (twice && !other.empty()) searched = takeSearched(structureKey(graph, lights, setting_));
+  std::optional<ir::Module> module =
+      makeStructure(graph, lights, other, setting_, entry.structure, twice ? &searched : nullptr);
+  if (twice && other.empty()) {
+    const std::lock_guard held(mutex_);
+    searched_[key] = std::move(searched);
+  }
   entry.ready = true;
   if (module && setting_.cache != nullptr) {
     const StageTimer timer(setting_.times, StageOfRun::Cache);
@@ -70,6 +78,15 @@ const Structure& Structures::of(const graph::Graph& graph, const passes::LightFa
     entry.structure.shader.clear();
   }
   return met(entry.structure);
+}
+
+passes::Searched Structures::takeSearched(const Key& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found = searched_.find(key);
+  if (found == searched_.end()) return {};
+  passes::Searched taken = std::move(found->second);
+  searched_.erase(found);
+  return taken;
 }
 
 const Structure& Structures::met(const Structure& structure) {

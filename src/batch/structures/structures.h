@@ -53,11 +53,15 @@ private:
   bool load(const Key& key, Entry& entry);
   bool need(const Structure& structure, std::optional<ir::Module> module);
   const Structure& met(const Structure& structure);
+  /// What a search has made of the structure of that key at its own places: it is needed once more, at those
+  /// of a fallback.
+  passes::Searched takeSearched(const Key& key);
 
   const Setting& setting_;
   mutable std::mutex mutex_;
   std::unordered_map<Key, std::unique_ptr<Entry>, KeyHash> entries_;
   std::map<std::string, Distinct> shaders_;
+  std::unordered_map<Key, passes::Searched, KeyHash> searched_;
   std::set<std::string> met_again_;
   bool looks_again_ = false;
   std::unique_ptr<KnownShapes> shapes_;

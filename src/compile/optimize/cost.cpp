@@ -91,7 +91,13 @@ double cyclesOf(const Tally& tally, const Family& family) {
   return weighed(family.weights) + longest;
 }
 
-Counter::Counter(const ir::Module& module) : dag_(module.dag) {
+double cyclesOf(const ir::Module& module, const Family& family) {
+  Constants constants;
+  const Plan plan = planOf(module, constants);
+  return cyclesOf(Counter(module).count(plan, constants), family);
+}
+
+Counter::Counter(const ir::Module& module) : dag_(module.dag), half_(module.half && module.half->used) {
   rounds_ = 1;
   for (const ir::LightGroup& group : module.light_groups) {
     const double rounds = group.count < 0 ? kRounds : std::max(1, group.count);
@@ -106,10 +112,51 @@ Tally Counter::count(const Plan& plan, const Constants& constants) {
   mark(plan);
   fuse(plan);
   modify(plan, constants);
+  if (half_) halve(plan);
   for (Ref at = 0; at < plan.nodes.size(); ++at) {
     if (mask_[at] != 0) countNode(plan, at);
   }
+  if (half_) convert(plan);
   return tally_;
+}
+
+/// Which nodes have types of 16 bits. What an operation is made of in the plan alone has those of the
+/// operation.
+void Counter::halve(const Plan& plan) {
+  halved_.assign(plan.nodes.size(), 0);
+  for (size_t at = plan.nodes.size(); at-- > 0;) {
+    const ir::ValueId origin = plan.origin[at];
+    if (origin != ir::kNoValue && dag_.relaxed(origin)) halved_[at] = 1;
+    if (halved_[at] == 0) continue;
+    for (const Ref operand : plan.nodes[at].operands()) {
+      if (plan.origin[operand] == ir::kNoValue) halved_[operand] = 1;
+    }
+  }
+}
+
+/// Numbers that pass between types of 16 and of 32 bits, and those of 16 that are put into one register.
+void Counter::convert(const Plan& plan) {
+  std::vector<uint8_t> converted(plan.nodes.size(), 0);
+  const auto pass = [&](Ref at, double times) {
+    const Node& node = plan.nodes[at];
+    if (converted[at] != 0 || node.op == Op::Constant || !ir::isFloating(node.type)) return;
+    if (ir::componentCount(node.type) > 4) return;
+    converted[at] = 1;
+    add(Count::Picks, times * kParts[mask_[at] & 15U]);
+  };
+  for (Ref at = 0; at < plan.nodes.size(); ++at) {
+    const Node& node = plan.nodes[at];
+    if (mask_[at] == 0) continue;
+    const double times = timesOf(at, node);
+    if (halved_[at] != 0 && node.op == Op::Construct && node.count > 1)
+      add(Count::Picks, times * ((kParts[mask_[at] & 15U] + 1) / 2));
+    for (const Ref operand : node.operands()) {
+      if (halved_[operand] != halved_[at]) pass(operand, times);
+    }
+  }
+  for (const Ref root : plan.roots) {
+    if (halved_[root] != 0) pass(root, 1);
+  }
 }
 
 /// Which components of each value are read, and how often it is.
@@ -312,7 +359,10 @@ double Counter::timesOf(Ref at, const Node& node) const {
 
 void Counter::countNode(const Plan& plan, Ref at) {
   const Node& node = plan.nodes[at];
-  const auto parts = static_cast<double>(kParts[mask_[at] & 15U]);
+  static constexpr Ops kPacked{Op::Add, Op::Mul, Op::Min, Op::Max};
+  int count = kParts[mask_[at] & 15U];
+  if (half_ && halved_[at] != 0 && kPacked.has(node.op)) count = (count + 1) / 2;
+  const auto parts = static_cast<double>(count);
   const double times = timesOf(at, node);
   if (node.op == Op::Interpolate) return add(Count::Varyings, parts);
   if (node.rate <= Rate::Material) {

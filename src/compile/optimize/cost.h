@@ -44,6 +44,9 @@ std::span<const Family> families();
 const Family* findFamily(std::string_view name);
 
 double cyclesOf(const Tally& tally, const Family& family);
+/// Of a module's fragment stage, placed or not. What has types of 16 bits is done by twos where GPUs with
+/// packed arithmetic do so, and each number that passes between the types takes an instruction.
+double cyclesOf(const ir::Module& module, const Family& family);
 /// Of one by itself.
 double cyclesOf(Count what, const Family& family);
 
@@ -70,8 +73,12 @@ private:
   }
 
   double timesOf(Ref at, const Node& node) const;
+  void halve(const Plan& plan);
+  void convert(const Plan& plan);
 
   const ir::Dag& dag_;
+  bool half_;                     ///< what the Dag says is relaxed has types of 16 bits
+  std::vector<uint8_t> halved_;   ///< nodes that have; empty where none may
   double rounds_;                 ///< of loops over lights
   std::vector<uint64_t> around_;  ///< the loops around each node (loopsAround())
   Tally tally_{};

@@ -80,6 +80,11 @@ public:
     const Class& of = (*this)[id];
     return optimize::component(of.facts.real, of.type, c);
   }
+  /// In float32, with light of at most 1.
+  const Range& floatRange(Ref id, int c) const {
+    const Class& of = (*this)[id];
+    return optimize::component(of.facts.lit, of.type, c);
+  }
   int width(Ref id) const { return ir::componentCount((*this)[id].type); }
   /// True when every component of the class is that number.
   bool isNumber(Ref id, double x) const;

@@ -1,6 +1,7 @@
 #include "optimize/optimize.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -17,6 +18,8 @@ namespace lacquer::optimize {
 namespace {
 
 using ir::ValueId;
+
+std::atomic<size_t> modules_searched{0};
 
 /// Nothing may have an error twice that of the plain form.
 constexpr double kGrowth = 2;
@@ -93,12 +96,15 @@ public:
     Counter counter(module_);
     const double plain = planCost(counter, plain_.plan, constants_, family_);
     double best = plain;
+    // What is idle in real arithmetic alone goes, until a proof is lost by that.
+    bool floats = false;
     for (int way = 0; way < plenty_.ways; ++way) {
       Found from = plain_;
+      Found kept = plain_;
       double before = plain;
       int idle = 0;
       for (int i = 0; i < plenty_.steps && idle < plenty_.idle; ++i) {
-        const Step step = this->step(from, static_cast<uint64_t>(way * plenty_.steps + i));
+        const Step step = this->step(from, static_cast<uint64_t>(way * plenty_.steps + i), floats);
         from = step.last;
         idle = step.best_cost < before - kCheaper ? 0 : idle + 1;
         before = std::min(before, step.best_cost);
@@ -108,7 +114,12 @@ public:
         // Nothing of a loop's body may stand for what is the same outside of it.
         if (made.dag.hasLoops() && ir::verify(made).size() > faults) continue;
         // What the plan's ranges promise the module's must keep.
-        if (!Proved(made).keeps(proved)) continue;
+        if (!Proved(made).keeps(proved)) {
+          if (!floats) from = kept, before = best, idle = 0;
+          floats = true;
+          continue;
+        }
+        kept = step.last;
         best = step.best_cost;
         all.push_back({std::move(made), {plain, best, step.growth}});
       }
@@ -137,13 +148,13 @@ private:
   }
 
   /// One graph, and the way through it.
-  Step step(const Found& from, uint64_t number) {
+  Step step(const Found& from, uint64_t number, bool floats) {
     EGraph graph(constants_, least_lights_, most_lights_, plenty_.nodes);
     std::map<ValueId, Ref> origins;
     std::vector<Ref> plain_classes = seed(graph, plain_, origins);
     std::vector<Ref> classes = seed(graph, from, origins);
     const Taste& taste = kTastes[number % std::size(kTastes)];
-    saturate(graph, {plenty_.rounds, plenty_.matches, taste.left_out, number});
+    saturate(graph, {plenty_.rounds, plenty_.matches, taste.left_out, number, floats});
     for (Ref& id : classes) id = graph.find(id);
     for (Ref& id : plain_classes) id = graph.find(id);
     std::vector<Ref> roots;
@@ -184,10 +195,28 @@ private:
   std::vector<Ranges> natural_;  ///< of the plain plan's nodes
 };
 
+/// What a level finds, and what the levels below it find: by a driver's count a form that the model takes for
+/// dearer may be the cheapest.
+std::vector<Candidate> equalForms(const ir::Module& module, Settings settings) {
+  std::vector<Candidate> all = Search(module, settings).run();
+  if (settings.level < 2) return all;
+  settings.level = 1;
+  std::vector<Candidate> fewer = Search(module, settings).run();
+  all.insert(all.end(), std::make_move_iterator(fewer.begin() + 1), std::make_move_iterator(fewer.end()));
+  std::stable_sort(all.begin() + 1, all.end(), [](const Candidate& a, const Candidate& b) {
+    return a.outcome.cycles > b.outcome.cycles;
+  });
+  return all;
+}
+
 }  // namespace
 
+bool searches() { return true; }
+size_t searched() { return modules_searched; }
+
 std::vector<Candidate> search(const ir::Module& module, const Settings& settings) {
-  std::vector<Candidate> all = Search(module, settings).run();
+  ++modules_searched;
+  std::vector<Candidate> all = equalForms(module, settings);
   if (settings.level < 2 || !(settings.error > 0)) return all;
   const Family& family = settings.family != nullptr ? *settings.family : families()[0];
   const double plain = all.front().outcome.cycles;
@@ -212,7 +241,7 @@ std::vector<Candidate> search(const ir::Module& module, const Settings& settings
 std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
                              std::span<const double> errors, const std::function<void()>& tried) {
   const Family& family = settings.family != nullptr ? *settings.family : families()[0];
-  std::vector<Candidate> all = Search(module, settings).run();
+  std::vector<Candidate> all = equalForms(module, settings);
   const Candidate exact = std::move(all.back());
   std::vector<Candidate> front{exact};
   if (tried) tried();

@@ -30,8 +30,13 @@ struct Candidate {
   Outcome outcome;
 };
 
-/// The module itself, then what was found, each cheaper by the model than the one before it. The same module
-/// gives the same candidates.
+/// False of a build that has no search.
+bool searches();
+/// How many modules this process has searched, for tests.
+size_t searched();
+
+/// The module itself, then what was found, the cheapest by the model last. The same module gives the same
+/// candidates, and a higher level those of the lower ones among its own.
 std::vector<Candidate> search(const ir::Module& module, const Settings& settings);
 
 /// The Pareto front of cycles against error by the model: first the cheapest form that is equal in real

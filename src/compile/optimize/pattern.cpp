@@ -288,7 +288,10 @@ void match(const EGraph& graph, const Pattern& pattern, NodeId node,
   Matcher(graph, pattern, found).run(node);
 }
 
-bool holds(const EGraph& graph, std::span<const Condition> conditions, const Letters& letters) {
+namespace {
+
+bool holdsIn(const EGraph& graph, std::span<const Condition> conditions, const Letters& letters,
+             const Range& (EGraph::*range)(Ref, int) const) {
   using Kind = Condition::Kind;
   for (const Condition& condition : conditions) {
     const Ref id = letters[condition.letter];
@@ -305,9 +308,9 @@ bool holds(const EGraph& graph, std::span<const Condition> conditions, const Let
     if (condition.other >= 0)
       width = std::max(width, graph.width(letters[static_cast<size_t>(condition.other)]));
     for (int c = 0; c < width && c < 4; ++c) {
-      const Range& a = graph.range(id, c);
+      const Range& a = (graph.*range)(id, c);
       Range b{condition.number, condition.number, false};
-      if (condition.other >= 0) b = graph.range(letters[static_cast<size_t>(condition.other)], c);
+      if (condition.other >= 0) b = (graph.*range)(letters[static_cast<size_t>(condition.other)], c);
       if (a.nan || b.nan) return false;
       bool good = false;
       switch (condition.kind) {
@@ -325,6 +328,13 @@ bool holds(const EGraph& graph, std::span<const Condition> conditions, const Let
     }
   }
   return true;
+}
+
+}  // namespace
+
+bool holds(const EGraph& graph, std::span<const Condition> conditions, const Letters& letters, bool floats) {
+  return holdsIn(graph, conditions, letters, &EGraph::range) &&
+         (!floats || holdsIn(graph, conditions, letters, &EGraph::floatRange));
 }
 
 Ref build(EGraph& graph, const Pattern& pattern, const Letters& letters) {

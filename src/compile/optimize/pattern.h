@@ -67,7 +67,8 @@ Rule ruleOf(std::string_view name, std::string_view left, std::string_view right
 void match(const EGraph& graph, const Pattern& pattern, NodeId node,
            const std::function<bool(const Letters&)>& found);
 /// Whether the conditions hold for the graph's classes.
-bool holds(const EGraph& graph, std::span<const Condition> conditions, const Letters& letters);
+/// `floats`: in float32 as well as in real arithmetic.
+bool holds(const EGraph& graph, std::span<const Condition> conditions, const Letters& letters, bool floats);
 /// The class of a pattern over classes; kNoRef where types do not fit or the graph is full.
 Ref build(EGraph& graph, const Pattern& pattern, const Letters& letters);
 

@@ -159,7 +159,7 @@ void applyTexts(EGraph& graph, const std::vector<std::vector<NodeId>>& nodes, co
     const Op op = rule.from.terms[rule.from.root].op;
     for (const NodeId id : nodes[static_cast<size_t>(op)]) {
       match(graph, rule.from, id, [&](const Letters& letters) {
-        if (holds(graph, rule.when, letters)) all.push_back({r, id, letters}), ++count;
+        if (holds(graph, rule.when, letters, growth.floats)) all.push_back({r, id, letters}), ++count;
         return count < growth.matches;
       });
       if (count >= growth.matches) break;

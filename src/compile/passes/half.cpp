@@ -141,9 +141,8 @@ private:
 
 }  // namespace
 
-std::vector<ir::Module> halves(const ir::Module& module, double error, std::vector<double>& gains) {
+std::vector<ir::Module> halves(const ir::Module& module, double error) {
   std::vector<ir::Module> forms{module};
-  gains.assign(1, 0);
   Halves halves(module);
   std::vector<std::vector<ValueId>> tried{{}};
   const auto offer = [&](std::vector<ValueId> chosen) {
@@ -157,7 +156,6 @@ std::vector<ir::Module> halves(const ir::Module& module, double error, std::vect
     for (const ValueId id : relaxation.values) form.dag.relax(id);
     form.relaxed_bound = relaxation.bound;
     form.half = ir::Half{true, {}, 0, 0};
-    gains.push_back(halves.gain(chosen, 1));
   };
   offer(halves.all());
   // Some conversions are part of the operation that asks for them: the price is not known.

@@ -91,9 +91,8 @@ void makeArrays(ir::Module& module);
 void relax(ir::Module& module, double error);
 
 /// Forms of a module with relaxed operations: itself, then some in which the operations that are still
-/// relaxed have types of 16 bits (ir::Half), each within `error`. The estimate of `gains`, of the same
-/// length, is in operations that a GPU does by twos, less conversions.
-std::vector<ir::Module> halves(const ir::Module& module, double error, std::vector<double>& gains);
+/// relaxed have types of 16 bits (ir::Half), each within `error`. The same for the same module.
+std::vector<ir::Module> halves(const ir::Module& module, double error);
 
 /// Two resources in one place ("slot-clash"): a mistake of Lacquer's, or of whoever made the module.
 Diagnostics checkPlaces(const ir::Module& module);

@@ -23,6 +23,22 @@ struct Choice {
 /// opinion.
 using Choose = std::function<std::optional<Choice>(std::span<const ir::Module> forms)>;
 
+/// Which form the pass `half` takes, where `optimize` has decided that as well.
+struct HalfForm {
+  size_t index = 0;  ///< in halves()
+  ir::Half said;
+};
+
+/// What a choice among halves(), the first of which is at 32 bits, comes to: types of 16 bits where they take
+/// fewer cycles.
+HalfForm halfOf(const Choice& choice);
+
+/// What `optimize` has made of a module.
+struct Searched {
+  std::optional<ir::Module> module;
+  std::optional<HalfForm> half;
+};
+
 struct PipelineOptions {
   LightFacts lights;
   /// Called with each pass's name and what it left.
@@ -35,6 +51,9 @@ struct PipelineOptions {
   bool arrays = false;           ///< the same
   bool static_samplers = false;  ///< Options::static_samplers
   bool half = false;             ///< Options::half
+  /// Where it holds something, `optimize` takes that instead of a search: it must be of the same module with
+  /// the same options but for `other`. Else what comes of the search is put there. May be null.
+  Searched* searched = nullptr;
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().

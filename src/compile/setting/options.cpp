@@ -7,6 +7,7 @@
 #include <set>
 
 #include "optimize/cost.h"
+#include "optimize/optimize.h"
 #include "setting/language.h"
 #include "setting/simplify.h"
 #include "targets/target.h"
@@ -148,7 +149,7 @@ Diagnostics checkReading(const Options& options) {
     add(wrong, "no-half", "types of 16 bits are asked for, and nothing is relaxed",
         "allow an error by `relaxed` (--relaxed), such as 0.01, or leave `half` out");
   }
-  if (options.optimize > 0 && optimize::families().empty()) {
+  if (options.optimize > 0 && !optimize::searches()) {
     add(wrong, "no-search", "this build of Lacquer does not search for cheaper forms",
         "leave `optimize` at 0; the program and the native library do");
   }

@@ -153,6 +153,19 @@ Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOption
   return module;
 }
 
+Diagnostics aboutHalf(const ir::Module& module, const Options& options) {
+  if (!options.half || (module.half && module.half->used)) return {};
+  return {{"half-unused",
+           Severity::Note,
+           {},
+           module.half ? std::string("types of 16 bits save no cycles: all numbers have 32")
+                       : fmt::format("nothing may be computed at half precision within an error of {}: all "
+                                     "numbers have 32 bits",
+                                     options.relaxed),
+           module.half ? "" : "allow a greater one by `relaxed` (--relaxed)",
+           {}}};
+}
+
 bool hasVertexStage(const ir::Module& module) {
   return std::any_of(module.outputs.begin(), module.outputs.end(),
                      [](const ir::Output& o) { return o.stage == ir::Stage::Vertex; });

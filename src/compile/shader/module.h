@@ -34,6 +34,9 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
 /// "slot-clash".
 Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options);
 
+/// Says where Options::half has no effect on a module: the note "half-unused".
+Diagnostics aboutHalf(const ir::Module& module, const Options& options);
+
 /// True when the module has something to draw with at vertices.
 bool hasVertexStage(const ir::Module& module);
 

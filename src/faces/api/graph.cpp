@@ -131,6 +131,7 @@ Shader Graph::generate(const Options& options, Messages& messages) {
   const Diagnostics over = overLimits(*module, options.targets);
   report(over, impl_->file, messages);
   if (lacquer::hasError(over)) return shader;
+  report(aboutHalf(*module, options), impl_->file, messages);
   const Result<const material::Schema*> schema = language.models.schema();
   ShaderData data;
   data.id = shaderId(*module, language);

@@ -17,6 +17,7 @@
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "shader/module.h"
 #include "support/file.h"
 #include "support/text.h"
 
@@ -420,6 +421,7 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
     evaluated.countLights(lights);
   else
     evaluated.place(lights);
+  if (on_device) report(aboutHalf(evaluated.module(), options), file, messages);
   Result<Colors> answer = colorsOf(evaluated, points, points_file, engine);
   report(images.takeNotes(), file, messages);
   if (!answer) return answer;
