@@ -99,7 +99,7 @@ public:
     const FourWhole step = wholeOf(place);
     const Line line = lineAt(step);
     const Four cell = line.value + line.rise * (place - numbersOf(step));
-    if (mostOf(greater(toward, -toward)) <= near_)
+    if (mostOf(greater(toward, Four{} - toward)) <= near_)
       return {cell, greater(line.value + line.rise * (light - numbersOf(step)), Four{})};
     const FourWhole there = wholeOf(light);
     const Line far = lineAt(there);
