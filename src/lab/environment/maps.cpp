@@ -55,7 +55,7 @@ public:
     // Cells of a GGX lobe that are near its middle cost little and show the most; those of the fibres' lobe
     // lie in a ring with a kink.
     const double fineness = 8 / std::sqrt(static_cast<double>(options.samples));
-    const double of_ggx = 0.76 * fineness, of_charlie = 0.75 * fineness;
+    const double of_ggx = 0.72 * fineness, of_charlie = 0.75 * fineness;
     const auto last = static_cast<uint32_t>(std::countr_zero(options.size / kSmallestLevel));
     filters_.reserve(2 * last + 3);
     maps.specular.resize(last + 1);
