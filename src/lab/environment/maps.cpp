@@ -19,56 +19,43 @@ constexpr double kCosineFineness = 0.1;  ///< of the irradiance: an error of 1e-
 constexpr double kDraftCosineFineness = 0.3;
 constexpr uint32_t kDraftSize = 64, kDraftSamples = 64;
 
-/// Texels of a square that are filtered together, along a side.
-constexpr uint32_t kSide = 4;
-static_assert(kSide * kSide == kTogether);
-
-/// What some rows of texels are: of a cube, the first of them and how many.
-struct Rows {
+/// What a row of texels is.
+struct Row {
   texture::CubeLevel* level;
   const Filter* filter;  ///< null: the mirror
-  uint32_t first;        ///< of all faces
-  uint32_t count;        ///< the side of the squares that are filtered together
+  uint32_t number;       ///< of all faces
 };
 
 /// The mean of the tree's cells that a texel of a mirror's level covers.
 Rgb mirrored(const LightTree& tree, size_t texel, uint32_t size) {
   const auto level = static_cast<uint32_t>(std::countr_zero(size));
-  const Cell& cell = tree.level(level)[placeOf(texel, level)];
+  const Cell cell = tree.cell(level, placeOf(texel, level));
   Rgb mean{};
   for (size_t i = 0; i < 3; ++i) mean[i] = cell.flux[i] / cell.angle;
   return mean;
 }
 
-void fill(const LightTree& tree, const Rows& rows) {
-  const uint32_t size = rows.level->size;
-  std::vector<Rgb>& texels = rows.level->texels;
-  if (rows.filter == nullptr) {
-    const size_t begin = size_t{rows.first} * size;
-    for (size_t texel = begin; texel < begin + size_t{rows.count} * size; ++texel)
-      texels[texel] = mirrored(tree, texel, size);
+void fill(const LightTree& tree, const Row& row) {
+  const uint32_t size = row.level->size;
+  const size_t first = size_t{row.number} * size;
+  const std::span<Rgb> texels = std::span(row.level->texels).subspan(first, size);
+  if (row.filter == nullptr) {
+    for (uint32_t x = 0; x < size; ++x) texels[x] = mirrored(tree, first + x, size);
     return;
   }
-  const uint32_t face = rows.first / size;
-  for (uint32_t left = 0; left < size; left += rows.count) {
-    const uint32_t width = rows.count;
-    std::array<Vec3, kTogether> directions{};
-    std::array<Rgb, kTogether> means{};
-    const uint32_t count = width * rows.count;
-    for (uint32_t i = 0; i < count; ++i)
-      directions[i] = texelDirection(face, left + i % width, rows.first % size + i / width, size);
-    (*rows.filter)(std::span(directions).first(count), std::span(means).first(count));
-    for (uint32_t i = 0; i < count; ++i)
-      texels[(size_t{rows.first} + i / width) * size + left + i % width] = means[i];
-  }
+  std::vector<Vec3> directions;
+  for (uint32_t x = 0; x < size; ++x)
+    directions.push_back(texelDirection(row.number / size, x, row.number % size, size));
+  (*row.filter)(directions, texels);
 }
 
 class Making {
 public:
   Making(const LightTree& tree, const MapOptions& options, Maps& maps) : tree_(tree), maps_(maps) {
+    // Cells of a GGX lobe that are near its middle cost little and show the most; those of the fibres' lobe
+    // lie in a ring with a kink.
     const double fineness = 8 / std::sqrt(static_cast<double>(options.samples));
-    // Light that is near the middle of its lobe costs little and shows the most.
-    const double finer = 0.9 * fineness;
+    const double of_ggx = 0.72 * fineness, of_charlie = 0.75 * fineness;
     const auto last = static_cast<uint32_t>(std::countr_zero(options.size / kSmallestLevel));
     filters_.reserve(2 * last + 3);
     maps.specular.resize(last + 1);
@@ -76,9 +63,9 @@ public:
     for (uint32_t i = 0; i <= last; ++i) {
       const double roughness = static_cast<double>(i) / last;
       add(maps.specular[i], options.size >> i,
-          i == 0 ? nullptr : &filters_.emplace_back(tree, Lobe::ggx(roughness), finer));
+          i == 0 ? nullptr : &filters_.emplace_back(tree, Lobe::ggx(roughness), of_ggx));
       add(maps.charlie[i], options.size / kCharliePart >> i,
-          &filters_.emplace_back(tree, Lobe::charlie(roughness), fineness));
+          &filters_.emplace_back(tree, Lobe::charlie(roughness), of_charlie));
     }
     add(maps.irradiance, kIrradianceSize,
         &filters_.emplace_back(tree, Lobe::cosine(), options.draft ? kDraftCosineFineness : kCosineFineness));
@@ -91,7 +78,7 @@ public:
       fill(tree_, rows_[i]);
       if (!progress) return;
       const std::lock_guard lock(mutex);
-      progress(done += rows_[i].count, known_);
+      progress(++done, rows_.size());
     });
     harmonics();
   }
@@ -100,9 +87,7 @@ private:
   void add(texture::CubeLevel& level, uint32_t size, const Filter* filter) {
     level.size = size;
     level.texels.resize(size_t{kFaces} * size * size);
-    const uint32_t count = std::min(kSide, size);
-    for (uint32_t row = 0; row < kFaces * size; row += count) rows_.push_back({&level, filter, row, count});
-    known_ += size_t{kFaces} * size;
+    for (uint32_t row = 0; row < kFaces * size; ++row) rows_.push_back({&level, filter, row});
   }
 
   void harmonics() {
@@ -110,10 +95,12 @@ private:
     constexpr double kCosine[] = {1.0, 2.0 / 3.0, 0.25};
     constexpr size_t kOrder[] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
     const uint32_t finest = tree_.levels() - 1;
-    const std::vector<Cell>& cells = tree_.level(finest);
-    for (size_t texel = 0; texel < cells.size(); ++texel) {
-      const Cell& cell = cells[placeOf(texel, finest)];
-      const std::array<double, 9> basis = harmonicsAt({cell.light[0], cell.light[1], cell.light[2]});
+    const size_t texels = size_t{kFaces} * tree_.size() * tree_.size();
+    for (size_t texel = 0; texel < texels; ++texel) {
+      const Cell cell = tree_.cell(finest, placeOf(texel, finest));
+      Vec3 light{};
+      for (size_t i = 0; i < 3; ++i) light[i] = double{cell.middle[i]} + cell.offset[i];
+      const std::array<double, 9> basis = harmonicsAt(light);
       for (size_t k = 0; k < 9; ++k) {
         for (size_t i = 0; i < 3; ++i) maps_.harmonics[k][i] += basis[k] * kCosine[kOrder[k]] * cell.flux[i];
       }
@@ -123,8 +110,7 @@ private:
   const LightTree& tree_;
   Maps& maps_;
   std::vector<Filter> filters_;
-  std::vector<Rows> rows_;
-  size_t known_ = 0;  ///< rows of texels
+  std::vector<Row> rows_;
 };
 
 /// The texel of a place that may lie beside its face by one.

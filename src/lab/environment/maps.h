@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "environment/light_tree.h"
+#include "environment/filter.h"
 #include "texture/cube.h"
 
 namespace lacquer::environment {
