@@ -60,5 +60,5 @@ function(lacquer_prepare target)
     # It runs once, and what emscripten optimizes JavaScript with need not be there.
     target_link_options(lacquer_prepare PRIVATE -O0 -sALLOW_MEMORY_GROWTH=1 -sWASM_ASYNC_COMPILATION=0)
   endif()
-  add_custom_command(OUTPUT "${output}" COMMAND lacquer_prepare ${which} > "${output}" COMMENT "Preparing the models" VERBATIM)
+  add_custom_command(OUTPUT "${output}" COMMAND lacquer_prepare ${which} > "${output}" DEPENDS lacquer_prepare COMMENT "Preparing the models" VERBATIM)
 endfunction()
