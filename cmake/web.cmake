@@ -69,7 +69,7 @@ function(lacquer_module)
     target_compile_options(lacquer_${folder} PRIVATE -Oz)
   endforeach()
   # So is that of passes which few materials, or few options, need.
-  foreach(file arrays bindless half pipeline specialize_lights hoist_vertex prune_loops)
+  foreach(file arrays bind bindless half pipeline place specialize_lights hoist_vertex prune_loops)
     set_source_files_properties("${PROJECT_SOURCE_DIR}/src/compile/passes/${file}.cpp" TARGET_DIRECTORY lacquer_passes
                                 PROPERTIES COMPILE_OPTIONS -Oz)
   endforeach()

@@ -58,10 +58,12 @@ TEST(Works, ACoatOfFactorZeroIsTheBase) {
   }
 }
 
-// By the driver's count, which may be another than the one that the search goes by.
+// By the driver's count, which may be another than the one that the search goes by. Works without an environment, of which
+// W3L once took more at level 2.
 TEST(Works, AHigherLevelOfSearchIsNeverDearer) {
   if (const std::string reason = cost::unavailable(); !reason.empty()) GTEST_SKIP() << reason;
   for (const Work& work : kWorks) {
+    if (work.name != std::string_view("W0L") && work.name != std::string_view("W3L")) continue;
     Options options;
     options.targets = {Target::Spirv};
     options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};

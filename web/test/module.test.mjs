@@ -12,7 +12,7 @@ const kExtensions = { glsl: 'glsl', 'glsl-gl': 'glsl', essl: 'glsl', hlsl: 'hlsl
 const kTargets = [...Object.keys(kExtensions), 'spirv'];
 const kStages = { vertex: 'vert', fragment: 'frag' };
 /** Bytes of lacquer.wasm after gzip: what the library takes today and a twentieth more. */
-const kMostBytes = 1_485_000;
+const kMostBytes = 1_490_000;
 
 let library;
 before(async () => {
