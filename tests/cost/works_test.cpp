@@ -58,8 +58,8 @@ TEST(Works, ACoatOfFactorZeroIsTheBase) {
   }
 }
 
-// By the driver's count, which may be another than the one that the search goes by. Works without an environment, of which
-// W3L once took more at level 2.
+// By the driver's count, which may be another than the one that the search goes by. Works without an
+// environment, of which W3L once took more at level 2.
 TEST(Works, AHigherLevelOfSearchIsNeverDearer) {
   if (const std::string reason = cost::unavailable(); !reason.empty()) GTEST_SKIP() << reason;
   for (const Work& work : kWorks) {
