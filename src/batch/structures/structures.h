@@ -53,8 +53,8 @@ private:
   bool load(const Key& key, Entry& entry);
   bool need(const Structure& structure, std::optional<ir::Module> module);
   const Structure& met(const Structure& structure);
-  /// What a search has made of the structure of that key at its own places: it is needed once more, at those
-  /// of a fallback.
+  /// The search's result for the structure of that key at its own places: the fallback's places need it once
+  /// more.
   passes::Searched takeSearched(const Key& key);
 
   const Setting& setting_;

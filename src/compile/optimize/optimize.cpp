@@ -96,7 +96,7 @@ public:
     Counter counter(module_);
     const double plain = planCost(counter, plain_.plan, constants_, family_);
     double best = plain;
-    // What is idle in real arithmetic alone goes, until a proof is lost by that.
+    // The search drops clamps that are idle in real arithmetic alone, until a proof is lost by that.
     bool floats = false;
     for (int way = 0; way < plenty_.ways; ++way) {
       Found from = plain_;
@@ -195,7 +195,7 @@ private:
   std::vector<Ranges> natural_;  ///< of the plain plan's nodes
 };
 
-/// What a level finds, and what the levels below it find: by a driver's count a form that the model takes for
+/// The forms of a level and of the levels below it: by a driver's count a form that the model takes for
 /// dearer may be the cheapest.
 std::vector<Candidate> equalForms(const ir::Module& module, Settings settings) {
   std::vector<Candidate> all = Search(module, settings).run();

@@ -24,7 +24,7 @@ struct Growth {
   /// Of a hundred rules that many are left out, by a draw: what is left goes further with as many nodes.
   unsigned left_out = 0;
   uint64_t seed = 0;
-  /// What rules ask must hold in float32 as well: a clamp stays where rounding may pass its bounds.
+  /// Conditions of rules must hold in float32 as well: a clamp stays where rounding may pass its bounds.
   bool floats = false;
 };
 

@@ -12,7 +12,7 @@ namespace lacquer::passes {
 
 namespace {
 
-/// What passes decide for those behind them.
+/// Decisions of passes that later passes follow.
 struct Decided {
   std::optional<HalfForm> half;
 };

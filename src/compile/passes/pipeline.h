@@ -29,11 +29,11 @@ struct HalfForm {
   ir::Half said;
 };
 
-/// What a choice among halves(), the first of which is at 32 bits, comes to: types of 16 bits where they take
-/// fewer cycles.
+/// The form that a choice among halves() gives, the first of which is at 32 bits: types of 16 bits only where
+/// they take fewer cycles.
 HalfForm halfOf(const Choice& choice);
 
-/// What `optimize` has made of a module.
+/// The result of the pass `optimize`.
 struct Searched {
   std::optional<ir::Module> module;
   std::optional<HalfForm> half;

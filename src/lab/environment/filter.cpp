@@ -53,7 +53,7 @@ float mostOf(const Four& lanes) {
   return std::max(std::max(lanes[0], lanes[2]), std::max(lanes[1], lanes[3]));
 }
 
-/// What a lobe is for four cells, and for the light of each.
+/// The values of a lobe at four cells, and at the light of each.
 struct Lit {
   Four cell, light;
 };
