@@ -72,6 +72,12 @@ TEST(Searches, ClampsStayWhereRoundingMayPassTheirBounds) {
   EXPECT_GT(optimize::search(beforeSearch("w2", true, "physical"), {1, 0, nullptr}).size(), 1U);
 }
 
+// Light through the body has no largest value. Behind it errors are held against the plain form's by what is
+// multiplied, in whatever order.
+TEST(Searches, FormsOfLightThroughABodyAreFound) {
+  EXPECT_GT(optimize::search(beforeSearch("b", false), {1, 0, nullptr}).size(), 1U);
+}
+
 // A material's own shader has other places beside a fallback than without one, and the same form.
 TEST(Searches, AShaderBesideAFallbackIsSearchedOnce) {
   constexpr const char* kThree = R"({

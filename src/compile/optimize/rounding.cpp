@@ -30,7 +30,7 @@ constexpr double kLeast = 0x1p-126;  // what is smaller may be flushed to 0
 constexpr double kPi = 3.14159265358979323846;
 /// Of a value that may be off by more of its range a bound says nothing of what follows.
 constexpr double kUseful = 0x1p-10;
-constexpr uint32_t kSelf = 16;  ///< stands for no operand but the value
+constexpr uint32_t kSelf = kNoRef;  ///< stands for no operand but the value
 
 double largest(const Range& x) { return std::max(std::abs(x.lo), std::abs(x.hi)); }
 
@@ -129,10 +129,11 @@ public:
       const bool cut =
           cuts == nullptr ? !(size <= kUseful) : !known || std::binary_search(cuts->begin(), cuts->end(), id);
       if (!cut) continue;
-      // What is unknown is held by what it was made of.
+      // What is unknown is held by what it was made of, by classes: the graph has operands of sums and products
+      // in an order of its own.
       bounds_.ends.push_back({id, kSelf, node.op, known ? size : 0});
       if (!known) {
-        for (uint32_t k = 0; k < node.count; ++k) end(at, k, node.args[k]);
+        for (const Ref operand : node.operands()) end(at, classes_[operand], operand);
       }
       errors_[at] = {};
       if (cuts == nullptr) bounds_.cuts.push_back(id);

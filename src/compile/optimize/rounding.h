@@ -14,7 +14,7 @@ namespace lacquer::optimize {
 /// said of what follows. Behind such a place all is held as if it were exact.
 struct Bound {
   Ref id;            ///< the class that has the operand, or that is off; kNoRef for the outputs
-  uint32_t operand;  ///< which one of its operands, or of the outputs
+  uint32_t operand;  ///< which one of its operands, or of the outputs; of arithmetic the operand's class
   ir::Op op;
   double error;  ///< at most, as a part of the largest value that there may be
 };
