@@ -207,8 +207,7 @@ std::vector<float> peerColors(const std::string& glsl, const std::vector<At>& po
 }
 
 void compare(const std::string& kind, uint64_t seed) {
-  if (!peerGenerator())
-    GTEST_SKIP() << "NOT TESTED: there is no MaterialX (LACQUER_MATERIALX), or no node.js";
+  if (!peerFolder()) GTEST_SKIP() << "NOT TESTED: there is no MaterialX (LACQUER_MATERIALX), or no node.js";
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   Random r(seed);
   std::string document = "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\">\n";
@@ -324,8 +323,7 @@ INSTANTIATE_TEST_SUITE_P(Models, ModelsPeer,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(ModelsPeer, drawsAlike) {
-  if (!peerGenerator())
-    GTEST_SKIP() << "NOT TESTED: there is no MaterialX (LACQUER_MATERIALX), or no node.js";
+  if (!peerFolder()) GTEST_SKIP() << "NOT TESTED: there is no MaterialX (LACQUER_MATERIALX), or no node.js";
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   const std::string model = GetParam();
   constexpr size_t kSurfaces = 3;

@@ -1,8 +1,10 @@
 #include "patterns/peer.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,41 +18,64 @@ namespace lacquer::test {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> peerGenerator() {
+std::optional<std::string> peerFolder() {
   const char* named = std::getenv("LACQUER_MATERIALX");
   const fs::path folder = named != nullptr ? fs::path(named) : sourceFolder() / "../shared/peers/materialx";
-  const fs::path file = folder / "generate.mjs";
-  if (!fs::exists(file) || std::system("node --version > /dev/null 2>&1") != 0) return std::nullopt;
-  return fs::canonical(file).string();
+  if (!fs::exists(folder / "JsMaterialXGenShader.mjs") || std::system("node --version > /dev/null 2>&1") != 0)
+    return std::nullopt;
+  return fs::canonical(folder).string();
 }
 
 namespace {
 
-/// The shaders' folder of a document, while this lives.
-class Generated {
+/// A process of node.js with MaterialX in it, which ends with this one.
+class Peer {
 public:
-  /// `arguments`: of node.js, MaterialX's folder standing for "{}".
-  Generated(const std::string& document, const std::string& arguments) {
-    const std::optional<std::string> generator = peerGenerator();
-    if (!generator) throw std::runtime_error("there is no MaterialX, or no node.js");
-    folder_ = fs::temp_directory_path() / fmt::format("lacquer_peer_{}", getpid());
+  Peer() : folder_(fs::temp_directory_path() / fmt::format("lacquer_peer_{}", getpid())) {
+    const std::optional<std::string> folder = peerFolder();
+    if (!folder) throw std::runtime_error("there is no MaterialX, or no node.js");
     fs::create_directories(folder_);
-    std::ofstream(folder_ / "a.mtlx") << document;
+    const fs::path answers = folder_ / "answers";
+    if (::mkfifo(answers.c_str(), 0600) != 0) throw std::runtime_error("there is no place for MaterialX");
+    const std::string program = (sourceFolder() / "tests/patterns/peers.mjs").string();
     const std::string command =
-        fmt::format("cd '{}' && node {} > log 2>&1", folder_.string(),
-                    fmt::format(fmt::runtime(arguments), fs::path(*generator).parent_path().string()));
-    if (std::system(command.c_str()) == 0) return;
-    const std::string log = readFile(folder_ / "log");
-    fs::remove_all(folder_);
-    throw std::runtime_error(document + ": " + log);
+        fmt::format("exec node '{}' '{}' > '{}' 2> /dev/null", program, *folder, answers.string());
+    asked_ = ::popen(command.c_str(), "w");
+    if (asked_ != nullptr) answers_ = std::ifstream(answers);
   }
-  ~Generated() { fs::remove_all(folder_); }
-  Generated(const Generated&) = delete;
-  Generated& operator=(const Generated&) = delete;
-  fs::path shaders() const { return folder_ / "out"; }
+  ~Peer() {
+    if (asked_ != nullptr) ::pclose(asked_);
+    fs::remove_all(folder_);
+  }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  /// The shaders of a document by their names, of a kind of peers.mjs.
+  std::map<std::string, std::string> make(std::string_view kind, const std::string& document) {
+    const fs::path file = folder_ / "a.mtlx", output = folder_ / "out";
+    std::ofstream(file) << document;
+    fs::remove_all(output);
+    fs::create_directories(output);
+    std::string answer;
+    fmt::print(asked_, "{}\t{}\t{}\n", kind, file.string(), output.string());
+    std::fflush(asked_);
+    if (!std::getline(answers_, answer)) answer = "MaterialX has ended";
+    if (answer != "good") throw std::runtime_error(document + ": " + answer);
+    std::map<std::string, std::string> shaders;
+    for (const fs::path& shader : findFiles(output, ".pixel"))
+      shaders.emplace(shader.stem().string(), readFile(shader));
+    return shaders;
+  }
+
+  static Peer& shared() {
+    static Peer peer;
+    return peer;
+  }
 
 private:
   fs::path folder_;
+  std::FILE* asked_ = nullptr;
+  std::ifstream answers_;
 };
 
 /// One block of inputs becomes an input for each member.
@@ -77,21 +102,15 @@ PeerShader takenApart(std::string glsl) {
 }  // namespace
 
 PeerShader peerShader(const std::string& nodes, std::string_view type, bool editable) {
-  const Generated made(
-      fmt::format("<?xml version=\"1.0\"?>\n<materialx version=\"1.39\"><nodegraph name=\"g\">{}<output "
-                  "name=\"out\" type=\"{}\" nodename=\"n\"/></nodegraph></materialx>\n",
-                  nodes, type),
-      fmt::format("'{{}}/generate.mjs' a.mtlx out VkShaderGenerator {}", editable ? "prefilter" : "best"));
-  return takenApart(readFile(made.shaders() / "g_out.pixel"));
+  const std::string document = fmt::format(
+      "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\"><nodegraph name=\"g\">{}<output "
+      "name=\"out\" type=\"{}\" nodename=\"n\"/></nodegraph></materialx>\n",
+      nodes, type);
+  return takenApart(Peer::shared().make(editable ? "editable" : "best", document).at("out"));
 }
 
 std::map<std::string, std::string> peerSurfaces(const std::string& document) {
-  const Generated made(document, fmt::format("'{}' '{{}}' a.mtlx out",
-                                             (sourceFolder() / "tests/materialx/surfaces.mjs").string()));
-  std::map<std::string, std::string> shaders;
-  for (const fs::path& file : findFiles(made.shaders(), ".pixel"))
-    shaders.emplace(file.stem().string(), readFile(file));
-  return shaders;
+  return Peer::shared().make("surfaces", document);
 }
 
 PeerShader peerLit(std::string glsl, double light, double environment) {

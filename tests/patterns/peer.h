@@ -1,5 +1,5 @@
 // MaterialX's own code for a node, where MaterialX and node.js are there: ../shared/peers/materialx, or the
-// folder that LACQUER_MATERIALX names, which has its WebAssembly module and a generate.mjs.
+// folder that LACQUER_MATERIALX names, which has its WebAssembly module.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct PeerShader {
   std::vector<std::string> inputs;  ///< their names, in the order of locations: texcoord_0, positionObject
 };
 
-/// The file that writes shaders; nothing where it is absent.
-std::optional<std::string> peerGenerator();
+/// The folder of its module; nothing where that or node.js is absent.
+std::optional<std::string> peerFolder();
 
 /// `nodes` is what stands in a nodegraph, of which the node called n has the type `type`. `editable`: inputs
 /// are uniforms, as viewers have them; else constants. Throws std::runtime_error with what MaterialX says.
