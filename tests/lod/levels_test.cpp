@@ -222,6 +222,43 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   EXPECT_GT(seen.delta_e, 0);
 }
 
+/// Without one of its words the last level costs more, or looks worse than it may.
+TEST_F(Levels, TheLastHasNoWordThatCostsSomething) {
+  const json& level = chain()["materials"][0]["levels"].back();
+  Options named = quick();
+  named.switches["specular_antialiasing"] = true;
+  const auto language = libraryFor(named);
+  ASSERT_TRUE(language.has_value());
+  ASSERT_TRUE(resolveNames(**language, named).has_value());
+  const auto document = readMaterials(work("w1"), **language, named);
+  ASSERT_TRUE(document.has_value());
+  FileImages images(work("w1"), named);
+  const Strings no_texels;
+  const preview::Mesh no_mesh;
+  LodMaterial again({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
+                     named, no_texels, no_mesh, 1},
+                    16);
+  Messages messages;
+  ASSERT_TRUE(again.open(messages).has_value());
+  const auto words = level["simplify"].get<lod::Words>();
+  std::vector<lod::Words> sets{words};
+  for (const std::string& word : words) {
+    sets.push_back(words);
+    std::erase(sets.back(), word);
+  }
+  const std::vector<std::optional<lod::Tried>> found = again.measure(sets);
+  ASSERT_TRUE(found[0]);
+  size_t compared = 0;
+  for (size_t i = 1; i < found.size(); ++i) {
+    if (!found[i] || found[i]->cost >= found[0]->cost) continue;
+    ++compared;
+    const Result<LevelFigures> seen = again.seen(sets[i], false);
+    ASSERT_TRUE(seen.has_value());
+    EXPECT_GT(seen->error.delta_e, 1) << words[i - 1];
+  }
+  EXPECT_LE(compared, words.size());
+}
+
 /// Highlights hold still in every level, unless somebody says no; nothing that is tried takes it off.
 TEST_F(Levels, AreAntialiased) {
   const auto derivatives = [](const fs::path& folder, const json& answer) {

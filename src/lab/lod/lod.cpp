@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "cost/cost.h"
@@ -243,13 +242,13 @@ private:
 
   /// What is measured is kept, and said, after so many sets.
   std::vector<std::optional<lod::Tried>> inBatches(LodMaterial& subject, const std::vector<lod::Words>& sets,
-                                                   const MaterialLevels& of) const {
+                                                   double most, const MaterialLevels& of) const {
     const size_t together = std::max<size_t>(16, 4 * threads());
     std::vector<std::optional<lod::Tried>> all;
     for (size_t i = 0; i < sets.size(); i += together) {
       const auto begin = sets.begin() + static_cast<ptrdiff_t>(i);
       const auto end = begin + static_cast<ptrdiff_t>(std::min(together, sets.size() - i));
-      for (std::optional<lod::Tried>& one : subject.measure({begin, end}, true))
+      for (std::optional<lod::Tried>& one : subject.measure({begin, end}, most))
         all.push_back(std::move(one));
       if (lod_.step) lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered()});
     }
@@ -264,8 +263,8 @@ private:
 
   /// Everything that is worth to be tried, and the best of it.
   void search(LodMaterial& subject, const lod::Tried& exact, LodChain& made) const {
-    const lod::Measure measure = [&](const std::vector<lod::Words>& sets) {
-      return inBatches(subject, sets, made.found);
+    const lod::Measure measure = [&](const std::vector<lod::Words>& sets, double most) {
+      return inBatches(subject, sets, most, made.found);
     };
     const lod::Subject of_word = [](const std::string& word) { return lacquer::subjectOf(word); };
     lod::Bounds bounds;
@@ -275,30 +274,24 @@ private:
     advice.refit = [&](const lod::Words& words) { return subject.fitted(words); };
     advice.same = [&](const lod::Words& a, const lod::Words& b) { return subject.same(a, b); };
     advice.choose = [&](const std::vector<lod::Tried>& front) { return chosen(front); };
-    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure, advice);
-    // The search is by small pictures; levels are chosen by those of the size that was asked for.
-    const std::vector<lod::Tried> front = lod::front(made.tried);
-    for (const size_t place : around(chosen(front), front.size())) {
-      lod::Tried one = front[place];
-      const Result<LevelFigures> seen = subject.seen(one.words, false);
-      if (!seen) continue;
-      one.error = seen->error.delta_e;
-      made.best.push_back(std::move(one));
-    }
-    made.best = lod::front(std::move(made.best));
+    advice.limit = [&](const lod::Tried& level, bool last) { return limitOf(level, last); };
+    advice.look = [&](const lod::Words& words) -> std::optional<double> {
+      const Result<LevelFigures> seen = subject.seen(words, false);
+      return seen ? std::optional(seen->error.delta_e) : std::nullopt;
+    };
+    lod::Searched searched = lod::search(exact, subject.words(), of_word, bounds, measure, advice);
+    made.tried = std::move(searched.tried);
+    made.best = std::move(searched.best);
     made.found.measured = made.tried.size();
   }
 
-  /// Places, and those beside them.
-  static std::set<size_t> around(const std::vector<size_t>& places, size_t count) {
-    constexpr size_t kBeside = 2;
-    std::set<size_t> all;
-    for (const size_t place : places) {
-      for (size_t i = place - std::min(place, kBeside); i <= std::min(place + kBeside, count - 1); ++i)
-        all.insert(i);
+  /// Levels that are asked for by their errors, and the last of a number, may be as wrong as was asked for.
+  std::optional<double> limitOf(const lod::Tried& level, bool last) const {
+    for (const double most : lod_.errors) {
+      if (level.error <= most) return most;
     }
-    all.insert(0);
-    return all;
+    const bool by_count = lod_.errors.empty() && lod_.costs.empty();
+    return by_count && last ? std::optional(lod_.most_error) : std::nullopt;
   }
 
   /// Level `k` of `count` with the exact one, from the largest size to the smallest by equal factors.
