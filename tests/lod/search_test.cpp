@@ -178,14 +178,17 @@ LastLevel lastOf(const Words& words, const Measure& measure, Advice advice) {
 }
 const Limit kTwo = [](const Tried&, bool last) { return last ? std::optional(2.0) : std::nullopt; };
 
-/// "first" is taken before "second", beside which it costs more than it saves, though it looks better.
+/// "first" is taken first, and costs something beside the others, though the set looks better with it.
 TEST(Search, TheLastLevelLosesAWordThatCostsSomething) {
   const Measure measure = measureBy([](const Words& set) {
-    const bool first = has(set, "first"), second = has(set, "second");
-    return Tried{set, 100.0 - (first ? (second ? -2 : 10) : 0) - (second ? 30 : 0),
-                 (second ? 1.5 : 0.0) - (first && second ? 0.2 : 0.0) + (first && !second ? 0.01 : 0.0)};
+    const bool first = has(set, "first"), second = has(set, "second"), third = has(set, "third");
+    const bool dear = second && third;
+    const double saved = (first ? (dear ? -3 : 10) : 0) + (second ? 20 : 0) + (third ? 20 : 0);
+    const double error = (second ? 0.5 : 0.0) + (third ? 0.6 : 0.0) + (dear && !first ? 0.1 : 0.0);
+    return Tried{set, 100 - saved, error + (first ? 0.001 : 0.0)};
   });
-  EXPECT_EQ(lastOf({"first", "second"}, measure, {{}, {}, {}, kTwo}).found.words, Words{"second"});
+  EXPECT_EQ(lastOf({"first", "second", "third"}, measure, {{}, {}, {}, kTwo}).found.words,
+            (Words{"second", "third"}));
 }
 
 /// Growth gives "later" up, which saves nothing until "last" is there.

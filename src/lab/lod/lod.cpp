@@ -144,20 +144,8 @@ private:
     std::string path;
     material::Document document;
     std::optional<graph::Graph> graph;
-    Key content{};  ///< of all that the file's text is made of, where results are kept
+    Key content{};  ///< of a graph's file, where results are kept
   };
-
-  Key contentOf(const Input& input) const {
-    KeyBuilder content;
-    if (store_ == nullptr) return {};
-    Strings files{input.path};
-    files.insert(files.end(), input.document.included.begin(), input.document.included.end());
-    for (const std::string& file : files) {
-      const Result<std::string> bytes = readFile(file);
-      content.number(bytes.has_value()).key(keyOf(bytes ? *bytes : std::string()));
-    }
-    return content.finish();
-  }
 
   void readGraph(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
     Result<graph::Graph> graph = readGraphFile(file, options_);
@@ -166,7 +154,9 @@ private:
     if (!only.empty() && std::find(only.begin(), only.end(), graph->name) == only.end()) return;
     ++known_;
     inputs.push_back({file, {}, std::move(*graph)});
-    inputs.back().content = contentOf(inputs.back());
+    if (store_ == nullptr) return;
+    const Result<std::string> bytes = readFile(file);
+    inputs.back().content = keyOf(bytes ? *bytes : std::string());
   }
 
   void read(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
@@ -181,7 +171,6 @@ private:
     known_ +=
         static_cast<size_t>(std::count_if(document->materials.begin(), document->materials.end(), wanted));
     inputs.push_back({document->path, std::move(*document), {}});
-    inputs.back().content = contentOf(inputs.back());
     for (material::Material& material : inputs.back().document.materials) {
       if (!wanted(material)) material.index = -2;  // not asked for; its place in the list stays its number
     }
@@ -440,12 +429,14 @@ private:
     for (const auto& [path, bytes] : files) outputs.push_back(lod_.output + "/" + path);
     if (Diagnostics wrong = clashes(inputs_, outputs); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
-    const Strings earlier = listedShaders(lod_.output + "/manifest.json");
+    Scratch scratch(lod_.output);
+    LeftShaders left(lod_.output, scratch, listedShaders(lod_.output + "/manifest.json"));
+    left.expect(shaders);
     for (const auto& [path, bytes] : files) {
-      const Result<bool> written = writeFile(lod_.output + "/" + path, bytes, {nullptr, options_.sync});
+      const Result<bool> written = writeFile(lod_.output + "/" + path, bytes, {&scratch, options_.sync});
       if (!written) return tl::make_unexpected(written.error());
     }
-    removeStale(lod_.output, earlier, shaders, inputs_);
+    left.remove(shaders, inputs_);
     return {};
   }
 

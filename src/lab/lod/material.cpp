@@ -89,6 +89,33 @@ Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options
   return cost::Subject{"level", std::move(data.spirv[0]), std::move(data.spirv[1])};
 }
 
+/// Of all that a material says, its name and its place in the file excepted.
+void addMaterial(const material::Material& material, KeyBuilder& key) {
+  const auto all = [&](const auto& numbers) {
+    key.number(std::size(numbers));
+    for (const auto x : numbers) key.number(x);
+  };
+  key.number(material.numbers.size()).number(material.textures.size());
+  for (const material::Material::Number& number : material.numbers) {
+    key.number(number.property);
+    all(number.value);
+  }
+  for (const material::Material::Texture& texture : material.textures) {
+    const gltf::TextureInfo& info = texture.info;
+    key.number(texture.property).number(info.image).number(info.texCoord).text(info.group).text(info.output);
+    all(info.channels), all(info.members), all(info.animated.members);
+    const gltf::TextureTransform transform = info.transform.value_or(gltf::TextureTransform());
+    key.number(info.transform.has_value()).number(transform.rotation);
+    all(transform.offset), all(transform.scale);
+    for (const bool moves : {info.animated.offset, info.animated.rotation, info.animated.scale})
+      key.number(moves);
+  }
+  all(material.animated), all(material.extensions);
+  key.text(material.patterns ? graph::toJson(*material.patterns) : std::string());
+  key.text(material.closures).text(material.displacement).number(material.ports.size());
+  for (const auto& [port, output] : material.ports) key.text(port).text(output);
+}
+
 Key codeOf(const cost::Subject& subject) {
   KeyBuilder key;
   for (const cost::Spirv* words : {&subject.vertex, &subject.fragment})
@@ -248,11 +275,17 @@ void LodMaterial::readTextures(EvalMaterial& evaluated) {
   }
 }
 
-/// Everything that results depend on: the build, the file, its images, its geometry, the options, and who
-/// counts cycles.
+/// Everything that results depend on: the build, the material, its images, its geometry, the options, and who
+/// counts cycles; nothing of the file's other materials.
 Key LodMaterial::keyOf(const EvalMaterial& evaluated) const {
   KeyBuilder key;
   key.text("levels").key(given_.store->base).key(given_.file).text(given_.subject.pointer());
+  if (given_.subject.material() != nullptr) addMaterial(*given_.subject.material(), key);
+  const gltf::VertexAttributes& has = given_.attributes;
+  for (const bool one : {has.normal, has.tangent, has.color0, has.skin[0], has.skin[1], has.morph,
+                         has.instances, has.quantized})
+    key.number(one);
+  for (const bool one : has.texCoord) key.number(one);
   key.text(exact_graph_).text(shaderId(*exact_module_, given_.language));
   addOptions(given_.options, {Decides::Graph, Decides::Module}, key);
   for (const std::string& texel : given_.texels) key.text(texel);

@@ -41,7 +41,7 @@ public:
     const preview::Mesh& mesh;          ///< the file's own geometry; without triangles where there is none
     double radius;                      ///< of the ball where there is no geometry
     const LevelStore* store = nullptr;  ///< null where nothing is kept
-    Key file{};                         ///< of what the subject was read from, where something is
+    Key file{};                         ///< of what a graph was read from, where something is
   };
   /// What is given must outlive this. Pictures that levels are chosen by are `size` pixels wide; those to
   /// search by have kSearched.
