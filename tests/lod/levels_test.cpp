@@ -171,17 +171,24 @@ TEST_F(Levels, AreLookedForFromWhereASearchWasEnded) {
   EXPECT_EQ(last.material, "W1");
 
   std::vector<size_t> cached;
+  LodStep::Stage stage = LodStep::Stage::Words;
   lod.step = [&](const LodStep& step) {
     last = step;
     cached.push_back(step.cached);
+    EXPECT_GE(step.stage, stage) << "one after the other";
+    stage = step.stage;
+    // All words are done with the last step of theirs.
+    EXPECT_LE(step.at + (stage == LodStep::Stage::Words ? 0 : 1), step.of);
   };
   EXPECT_EQ(makeIn(lod, work("w1"), options)["materials"], chain()["materials"]);
   ASSERT_GT(cached.size(), 4U);
   for (size_t i = 0; i + 1 < 4; ++i) EXPECT_GT(cached[i + 1], cached[i]);
   const size_t known = last.cached;
   EXPECT_GT(known, 48U);
+  EXPECT_EQ(last.stage, LodStep::Stage::Levels);
 
   // All of it is known now; nothing is of a material of other numbers.
+  stage = LodStep::Stage::Words;
   EXPECT_EQ(makeIn(lod, work("w1"), options)["materials"], chain()["materials"]);
   EXPECT_GT(last.cached, known);
   std::string other = readFile(work("w1"));

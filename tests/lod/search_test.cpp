@@ -178,17 +178,17 @@ LastLevel lastOf(const Words& words, const Measure& measure, Advice advice) {
 }
 const Limit kTwo = [](const Tried&, bool last) { return last ? std::optional(2.0) : std::nullopt; };
 
-/// "first" is taken first, and costs something beside the others, though the set looks better with it.
-TEST(Search, TheLastLevelLosesAWordThatCostsSomething) {
+/// Six words are taken first, and cost something beside the others, though the set looks better with each.
+TEST(Search, TheLastLevelLosesWordsThatCostSomething) {
   const Measure measure = measureBy([](const Words& set) {
-    const bool first = has(set, "first"), second = has(set, "second"), third = has(set, "third");
-    const bool dear = second && third;
-    const double saved = (first ? (dear ? -3 : 10) : 0) + (second ? 20 : 0) + (third ? 20 : 0);
-    const double error = (second ? 0.5 : 0.0) + (third ? 0.6 : 0.0) + (dear && !first ? 0.1 : 0.0);
-    return Tried{set, 100 - saved, error + (first ? 0.001 : 0.0)};
+    const bool second = has(set, "second"), third = has(set, "third"), dear = second && third;
+    const auto firsts = static_cast<double>(set.size()) - (second ? 1 : 0) - (third ? 1 : 0);
+    const double saved = (dear ? 20 - firsts : 5 * firsts) + (second ? 20 : 0) + (third ? 20 : 0);
+    const double error = (second ? 0.5 : 0.0) + (third ? 0.6 : 0.0) + (dear ? 0.02 * (6 - firsts) : 0.0);
+    return Tried{set, 100 - saved, error + 0.0001 * firsts};
   });
-  EXPECT_EQ(lastOf({"first", "second", "third"}, measure, {{}, {}, {}, kTwo}).found.words,
-            (Words{"second", "third"}));
+  const Words words{"a", "b", "c", "d", "e", "f", "second", "third"};
+  EXPECT_EQ(lastOf(words, measure, {{}, {}, {}, kTwo}).found.words, (Words{"second", "third"}));
 }
 
 /// Growth gives "later" up, which saves nothing until "last" is there.

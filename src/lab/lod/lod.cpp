@@ -231,7 +231,8 @@ private:
 
   /// What is measured is kept, and said, after so many sets.
   std::vector<std::optional<lod::Tried>> inBatches(LodMaterial& subject, const std::vector<lod::Words>& sets,
-                                                   double most, const MaterialLevels& of) const {
+                                                   double most, const lod::Stage& stage,
+                                                   const MaterialLevels& of) const {
     const size_t together = std::max<size_t>(16, 4 * threads());
     std::vector<std::optional<lod::Tried>> all;
     for (size_t i = 0; i < sets.size(); i += together) {
@@ -239,7 +240,10 @@ private:
       const auto end = begin + static_cast<ptrdiff_t>(std::min(together, sets.size() - i));
       for (std::optional<lod::Tried>& one : subject.measure({begin, end}, most))
         all.push_back(std::move(one));
-      if (lod_.step) lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered()});
+      if (!lod_.step) continue;
+      const bool words = stage.what == lod::Stage::Of::Words;
+      lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered(),
+                 static_cast<LodStep::Stage>(stage.what), words ? all.size() : stage.at, stage.of});
     }
     return all;
   }
@@ -252,8 +256,9 @@ private:
 
   /// Everything that is worth to be tried, and the best of it.
   void search(LodMaterial& subject, const lod::Tried& exact, LodChain& made) const {
+    lod::Stage stage;
     const lod::Measure measure = [&](const std::vector<lod::Words>& sets, double most) {
-      return inBatches(subject, sets, most, made.found);
+      return inBatches(subject, sets, most, stage, made.found);
     };
     const lod::Subject of_word = [](const std::string& word) { return lacquer::subjectOf(word); };
     lod::Bounds bounds;
@@ -263,6 +268,7 @@ private:
     advice.refit = [&](const lod::Words& words) { return subject.fitted(words); };
     advice.same = [&](const lod::Words& a, const lod::Words& b) { return subject.same(a, b); };
     advice.choose = [&](const std::vector<lod::Tried>& front) { return chosen(front); };
+    advice.stage = [&](const lod::Stage& begins) { stage = begins; };
     advice.limit = [&](const lod::Tried& level, bool last) { return limitOf(level, last); };
     advice.look = [&](const lod::Words& words) -> std::optional<double> {
       const Result<LevelFigures> seen = subject.seen(words, false);

@@ -36,10 +36,12 @@ public:
   Searched run(const Tried& exact) {
     all_.push_back(exact);
     known_[exact.words] = exact;
+    begin({Stage::Of::Words, 0, words_.size()});
     alone(exact);
     // What costs nothing to see goes first, all at once.
     Tried from = unseen(exact);
     for (size_t step = 0; step < bounds_.steps; ++step) {
+      begin({Stage::Of::Sets, step, bounds_.steps});
       std::optional<Tried> next = grow(from);
       if (!next) break;
       from = refitted(std::move(*next), kWorthFitting);
@@ -53,6 +55,10 @@ public:
   }
 
 private:
+  void begin(const Stage& stage) const {
+    if (advice_.stage) advice_.stage(stage);
+  }
+
   struct Effect {
     double saved = 0, error = 0;
   };
@@ -279,9 +285,11 @@ private:
     std::set<Words> done;
     for (size_t round = 0; round < kChoices; ++round) {
       const size_t before = done.size();
-      for (const Chosen& level : levels()) {
-        if (!done.insert(level.tried.words).second) continue;
-        done.insert(refined(level.tried, level.limit).words);
+      const std::vector<Chosen> all = levels();
+      for (size_t i = 0; i < all.size(); ++i) {
+        if (!done.insert(all[i].tried.words).second) continue;
+        begin({Stage::Of::Levels, i, all.size()});
+        done.insert(refined(all[i].tried, all[i].limit).words);
       }
       if (done.size() == before) return;
     }

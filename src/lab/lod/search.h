@@ -35,6 +35,12 @@ using Limit = std::function<std::optional<double>(const Tried& level, bool last)
 /// How wrong a set that was measured looks by larger pictures.
 using Look = std::function<std::optional<double>(const Words& words)>;
 
+/// What a search is at: words alone, sets that grow, or levels; which of them, and how many there are.
+struct Stage {
+  enum class Of { Words, Sets, Levels } what = Of::Words;
+  size_t at = 0, of = 0;
+};
+
 /// What a search may ask for beside measurements.
 struct Advice {
   Refit refit{};    ///< without it no numbers are fitted
@@ -42,6 +48,7 @@ struct Advice {
   Choose choose{};  ///< without it all of the front may be levels
   Limit limit{};    ///< without it no level may look worse than it does
   Look look{};      ///< without it sets look as wrong as was measured
+  std::function<void(const Stage&)> stage{};  ///< called at the begin of each
 };
 
 /// What a search has found.
