@@ -126,6 +126,10 @@ struct LodStep {
   std::string file, material;       ///< names
   size_t done = 0, known = 0;       ///< materials
   size_t measured = 0, cached = 0;  ///< of this one: shaders, and sets of words that the cache knew
+  /// What is done of it: every word is tried alone, sets grow by a word (a count of at most), and levels
+  /// become better, several times over.
+  enum class Stage { Words, Sets, Levels } stage = Stage::Words;
+  size_t at = 0, of = 0;  ///< how many of these are done, and how many there are
 };
 /// Levels of detail (docs/lod.md).
 struct Lod {

@@ -12,10 +12,12 @@
 #include "cost/cost.h"
 #include "lacquer.h"
 #include "lod/material.h"
+#include "manifest/stale.h"
 #include "setting/language.h"
 #include "setting/options.h"
 #include "support/answers.h"
 #include "support/cases.h"
+#include "support/file.h"
 
 namespace lacquer::test {
 namespace {
@@ -169,17 +171,24 @@ TEST_F(Levels, AreLookedForFromWhereASearchWasEnded) {
   EXPECT_EQ(last.material, "W1");
 
   std::vector<size_t> cached;
+  LodStep::Stage stage = LodStep::Stage::Words;
   lod.step = [&](const LodStep& step) {
     last = step;
     cached.push_back(step.cached);
+    EXPECT_GE(step.stage, stage) << "one after the other";
+    stage = step.stage;
+    // All words are done with the last step of theirs.
+    EXPECT_LE(step.at + (stage == LodStep::Stage::Words ? 0 : 1), step.of);
   };
   EXPECT_EQ(makeIn(lod, work("w1"), options)["materials"], chain()["materials"]);
   ASSERT_GT(cached.size(), 4U);
   for (size_t i = 0; i + 1 < 4; ++i) EXPECT_GT(cached[i + 1], cached[i]);
   const size_t known = last.cached;
   EXPECT_GT(known, 48U);
+  EXPECT_EQ(last.stage, LodStep::Stage::Levels);
 
   // All of it is known now; nothing is of a material of other numbers.
+  stage = LodStep::Stage::Words;
   EXPECT_EQ(makeIn(lod, work("w1"), options)["materials"], chain()["materials"]);
   EXPECT_GT(last.cached, known);
   std::string other = readFile(work("w1"));
@@ -193,6 +202,64 @@ TEST_F(Levels, AreLookedForFromWhereASearchWasEnded) {
   };
   EXPECT_THROW(makeLevels(lod, {(folder_ / "other.gltf").string()}, {}, options, messages), Ended);
   EXPECT_EQ(last.cached, 0U);
+}
+
+/// What is known of a material holds beside other ones, too, but not of other numbers.
+TEST_F(Levels, AreKeptByMaterial) {
+  json file = json::parse(readFile(work("w0")));
+  json second = file["materials"][0];
+  second["name"] = "Second";
+  second["pbrMetallicRoughness"]["roughnessFactor"] = 0.33;
+  file["materials"].push_back(second);
+  const std::string path = (folder_ / "two.gltf").string();
+  Options options = quick();
+  options.cache = (folder_ / "cache").string();
+  Lod lod = chainLod(folder_ / "out");
+  lod.levels = 2;
+  LodStep last;
+  size_t fewest = 0;
+  lod.step = [&](const LodStep& step) {
+    fewest = last.measured == 0 ? step.cached : std::min(fewest, step.cached);
+    last = step;
+  };
+  const auto of = [&](const std::string& name) {
+    std::ofstream(path) << file.dump();
+    last = {};
+    Messages messages;
+    const auto made = makeLevels(lod, {path}, {name}, options, messages);
+    EXPECT_TRUE(made && !hasError(messages));
+    return made ? json::parse(jsonOf(made))["materials"] : json();
+  };
+  Messages messages;
+  std::ofstream(path) << file.dump();
+  const auto whole = makeLevels(lod, {path}, {}, options, messages);
+  ASSERT_TRUE(whole && !hasError(messages));
+  const json both = json::parse(jsonOf(whole))["materials"];
+  EXPECT_EQ(last.cached, 0U);
+  EXPECT_EQ(of("Second")[0], both[1]);
+  EXPECT_GT(fewest, 0U) << "a material alone";
+  file["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.2;
+  EXPECT_EQ(of("Second")[0], both[1]);
+  EXPECT_GT(fewest, 0U) << "another material changed";
+  file["materials"][1]["pbrMetallicRoughness"]["metallicFactor"] = 0.9;
+  of("Second");
+  EXPECT_EQ(last.cached, 0U) << "its own numbers changed";
+}
+
+/// Shaders that a killed run has noted and written go with the next run.
+TEST_F(Levels, LeaveNoShadersOfAKilledRun) {
+  const std::string out = (folder_ / "out").string();
+  const std::string left = "spirv/forward-00000000000000000000000000000000.frag.spv";
+  fs::create_directories(folder_ / "out/spirv");
+  {
+    Scratch scratch(out);
+    LeftShaders(out, scratch, {}).expect({left});
+    std::ofstream(folder_ / "out" / left) << "of a killed run";
+  }
+  const Lod lod = chainLod(out);
+  EXPECT_FALSE(makeIn(lod, work("w0"), quick()).empty());
+  EXPECT_FALSE(fs::exists(folder_ / "out" / left));
+  EXPECT_FALSE(fs::exists(Scratch::below(out)));
 }
 
 TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
@@ -220,6 +287,33 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   EXPECT_EQ(seen.delta_e, level["error"]["delta_e"]["mean"].get<double>());
   EXPECT_EQ(seen.flip_95, level["error"]["flip"]["p95"].get<double>());
   EXPECT_GT(seen.delta_e, 0);
+}
+
+/// Numbers are fitted to what is seen: with squares of distances in L*a*b* 0.97 and 0.89 would be left.
+TEST_F(Levels, FittedNumbersLookLessWrong) {
+  Options named = quick();
+  named.switches["specular_antialiasing"] = true;
+  const auto language = libraryFor(named);
+  ASSERT_TRUE(language.has_value());
+  ASSERT_TRUE(resolveNames(**language, named).has_value());
+  const auto document = readMaterials(work("w1"), **language, named);
+  ASSERT_TRUE(document.has_value());
+  FileImages images(work("w1"), named);
+  const Strings no_texels;
+  const preview::Mesh no_mesh;
+  LodMaterial subject({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
+                       named, no_texels, no_mesh, 1},
+                      16);
+  Messages messages;
+  ASSERT_TRUE(subject.open(messages).has_value());
+  for (const char* word : {"without:coat", "lod:coat_base_lobe"}) {
+    const lod::Words words{word};
+    const std::optional<lod::Words> fitted = subject.fitted(words);
+    ASSERT_TRUE(fitted.has_value());
+    const std::vector<std::optional<lod::Tried>> found = subject.measure({words, *fitted});
+    ASSERT_TRUE(found[0] && found[1]);
+    EXPECT_LT(found[1]->error, 0.7 * found[0]->error) << word;
+  }
 }
 
 /// Highlights hold still in every level, unless somebody says no; nothing that is tried takes it off.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -42,7 +44,8 @@ std::vector<Tried> found(const World& world) {
   Words words{"broken:1"};
   for (const auto& [word, ignored] : world.words) words.push_back(word);
   return search(*world({}), words, subjectOf, {10, 24, 10},
-                [&](const std::vector<Words>& sets) { return world.all(sets); });
+                [&](const std::vector<Words>& sets, double) { return world.all(sets); })
+      .tried;
 }
 
 TEST(Search, GrowsByTheWordsThatSaveTheMostForTheLeast) {
@@ -55,7 +58,7 @@ TEST(Search, GrowsByTheWordsThatSaveTheMostForTheLeast) {
 }
 
 TEST(Search, AWordThatDoesNothingAloneIsTriedBesideOthers) {
-  const Measure measure = [](const std::vector<Words>& sets) {
+  const Measure measure = [](const std::vector<Words>& sets, double) {
     std::vector<std::optional<Tried>> result;
     for (const Words& set : sets) {
       const bool first = std::find(set.begin(), set.end(), "first") != set.end();
@@ -65,12 +68,12 @@ TEST(Search, AWordThatDoesNothingAloneIsTriedBesideOthers) {
     return result;
   };
   const std::vector<Tried> best =
-      front(search({{}, 100, 0}, {"first", "second"}, subjectOf, {10, 24, 10}, measure));
+      front(search({{}, 100, 0}, {"first", "second"}, subjectOf, {10, 24, 10}, measure).tried);
   EXPECT_EQ(best.back().words, (Words{"first", "second"}));
 }
 
 TEST(Search, GoesOnFromWhereNumbersAreFitted) {
-  const Measure measure = [](const std::vector<Words>& sets) {
+  const Measure measure = [](const std::vector<Words>& sets, double) {
     std::vector<std::optional<Tried>> result;
     for (const Words& set : sets) {
       Tried tried{set, 100, 0};
@@ -92,9 +95,9 @@ TEST(Search, GoesOnFromWhereNumbersAreFitted) {
   };
   const auto all = [](const std::string& word) { return word; };
   // Two of them are too much without the fit.
-  const std::vector<Tried> found = search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure, {refit});
-  EXPECT_EQ(front(found).back().words, (Words{"a", "b", "c", "scale:x"}));
-  for (const Tried& one : search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure))
+  const Searched found = search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure, {refit});
+  EXPECT_EQ(front(found.tried).back().words, (Words{"a", "b", "c", "scale:x"}));
+  for (const Tried& one : search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure).tried)
     EXPECT_LT(one.words.size(), 3U);
 }
 
@@ -107,7 +110,7 @@ TEST(Search, OfManyIdleWordsThoseAreMeasuredThatDoSomething) {
     return 100.0 - (has("first") ? 10 : 0) - (has("first") && has("idle:k") ? 30 : 0);
   };
   size_t pairs = 0, asked = 0;
-  const Measure measure = [&](const std::vector<Words>& sets) {
+  const Measure measure = [&](const std::vector<Words>& sets, double) {
     std::vector<std::optional<Tried>> result;
     for (const Words& set : sets) {
       pairs += set.size() == 2 ? 1 : 0;
@@ -120,7 +123,7 @@ TEST(Search, OfManyIdleWordsThoseAreMeasuredThatDoSomething) {
     return costOf(a) == costOf(b);
   };
   const auto all = [](const std::string& word) { return word; };
-  EXPECT_EQ(front(search({{}, 100, 0}, words, all, {10, 24, 10}, measure, {{}, same})).back().words,
+  EXPECT_EQ(front(search({{}, 100, 0}, words, all, {10, 24, 10}, measure, {{}, same}).tried).back().words,
             (Words{"first", "idle:k"}));
   EXPECT_EQ(pairs, 1U);
   EXPECT_LT(asked, 20U) << "halves are asked for, not words";
@@ -134,7 +137,8 @@ TEST(Search, WhatIsNoLevelIsNotMadeBetter) {
     for (const auto& [word, ignored] : world.words) words.push_back(word);
     const std::vector<Tried> all =
         search(*world({}), words, subjectOf, {10, 24, 10},
-               [&](const std::vector<Words>& sets) { return world.all(sets); }, {{}, {}, choose});
+               [&](const std::vector<Words>& sets, double) { return world.all(sets); }, {{}, {}, choose})
+            .tried;
     measured = world.measured;
     return front(all);
   };
@@ -143,6 +147,111 @@ TEST(Search, WhatIsNoLevelIsNotMadeBetter) {
   const auto last = [](const std::vector<Tried>& front) { return std::vector<size_t>{0, front.size() - 1}; };
   EXPECT_EQ(run(last, of_last).back().words, best.back().words);
   EXPECT_LT(of_last, of_all);
+}
+
+/// What `World` gives for words that save and spoil, but for what they do beside others.
+Measure measureBy(const std::function<Tried(const Words&)>& of) {
+  return [of](const std::vector<Words>& sets, double) {
+    std::vector<std::optional<Tried>> result;
+    for (const Words& set : sets) result.push_back(of(set));
+    return result;
+  };
+}
+
+bool has(const Words& words, const char* word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The cheapest that is no worse than 2, alone, and what it costs to find it.
+struct LastLevel {
+  Tried found;
+  Searched searched;
+};
+LastLevel lastOf(const Words& words, const Measure& measure, Advice advice) {
+  advice.choose = [](const std::vector<Tried>& front) { return byCount(front, 2, 2); };
+  LastLevel last;
+  last.searched = search(
+      {{}, 100, 0}, words, [](const std::string& word) { return word; }, {4, 24, 10}, measure, advice);
+  const std::vector<size_t> levels = byCount(last.searched.best, 2, 2);
+  last.found = last.searched.best.at(levels.back());
+  return last;
+}
+const Limit kTwo = [](const Tried&, bool last) { return last ? std::optional(2.0) : std::nullopt; };
+
+/// Six words are taken first, and cost something beside the others, though the set looks better with each.
+TEST(Search, TheLastLevelLosesWordsThatCostSomething) {
+  const Measure measure = measureBy([](const Words& set) {
+    const bool second = has(set, "second"), third = has(set, "third"), dear = second && third;
+    const auto firsts = static_cast<double>(set.size()) - (second ? 1 : 0) - (third ? 1 : 0);
+    const double saved = (dear ? 20 - firsts : 5 * firsts) + (second ? 20 : 0) + (third ? 20 : 0);
+    const double error = (second ? 0.5 : 0.0) + (third ? 0.6 : 0.0) + (dear ? 0.02 * (6 - firsts) : 0.0);
+    return Tried{set, 100 - saved, error + 0.0001 * firsts};
+  });
+  const Words words{"a", "b", "c", "d", "e", "f", "second", "third"};
+  EXPECT_EQ(lastOf(words, measure, {{}, {}, {}, kTwo}).found.words, (Words{"second", "third"}));
+}
+
+/// Growth gives "later" up, which saves nothing until "last" is there.
+TEST(Search, TheLastLevelTakesAWordThatMakesItCheaper) {
+  const Measure measure = measureBy([](const Words& set) {
+    const bool later = has(set, "later"), one = has(set, "one"), last = has(set, "last");
+    double saved = (one ? 40 : 0) + (last ? 10 : 0);
+    if (later) saved += last ? 5 : one ? -1 : 1;
+    return Tried{set, 100 - saved, (one ? 0.1 : 0.0) + (last ? 0.5 : 0.0) + (later ? 0.7 : 0.0)};
+  });
+  EXPECT_EQ(lastOf({"last", "later", "one"}, measure, {{}, {}, {}, kTwo}).found.words,
+            (Words{"last", "later", "one"}));
+  EXPECT_EQ(lastOf({"last", "later", "one"}, measure, {}).found.words, (Words{"last", "one"}));
+}
+
+/// By smaller pictures the cheapest is worse than it may be; by larger ones it is not.
+TEST(Search, LevelsAreChosenByLargerPictures) {
+  const Measure measure = measureBy([](const Words& set) {
+    return Tried{set, 100 - 30.0 * static_cast<double>(set.size()), 1.1 * static_cast<double>(set.size())};
+  });
+  size_t looked = 0;
+  const Look look = [&](const Words& set) {
+    ++looked;
+    return std::optional(0.9 * static_cast<double>(set.size()));
+  };
+  const LastLevel last = lastOf({"a", "b"}, measure, {{}, {}, {}, kTwo, look});
+  EXPECT_EQ(last.found.words, (Words{"a", "b"}));
+  EXPECT_EQ(last.found.error, 1.8);
+  EXPECT_EQ(last.searched.best.size(), looked + 1) << "the front is what larger pictures were made of";
+  EXPECT_EQ(lastOf({"a", "b"}, measure, {{}, {}, {}, kTwo}).found.words.size(), 1U);
+}
+
+/// Two sets of one cost are told apart by larger pictures where smaller ones see hardly a difference.
+TEST(Search, EqualCostsAreToldApartByLargerPictures) {
+  const Measure measure = measureBy([](const Words& set) {
+    const double error = set.size() > 1 ? 5 : has(set, "a") ? 1.0 : has(set, "b") ? 1.01 : 0.0;
+    return Tried{set, 100 - 30.0 * static_cast<double>(set.size()), error};
+  });
+  const Look look = [](const Words& set) {
+    return std::optional(set.size() > 1 ? 5.0 : has(set, "a") ? 1.2 : 1.0);
+  };
+  EXPECT_EQ(lastOf({"a", "b"}, measure, {{}, {}, {}, {}, look}).found.words, Words{"b"});
+}
+
+/// Where a level is to become cheaper nobody looks at what costs more than it does.
+TEST(Search, WhatCostsMoreThanALevelIsNotLookedAt) {
+  size_t dear = 0;
+  const Measure measure = [&](const std::vector<Words>& sets, double most) {
+    std::vector<std::optional<Tried>> result;
+    for (const Words& set : sets) {
+      Tried tried{set, 100 - 10.0 * static_cast<double>(set.size()), 0.4 * static_cast<double>(set.size())};
+      if (tried.cost > most) {
+        tried.error = std::numeric_limits<double>::infinity();
+        ++dear;
+      }
+      result.push_back(std::move(tried));
+    }
+    return result;
+  };
+  const LastLevel last = lastOf({"a", "b", "c", "d", "e"}, measure, {{}, {}, {}, kTwo});
+  EXPECT_EQ(last.found.words.size(), 5U);
+  EXPECT_GT(dear, 0U);
+  for (const Tried& one : last.searched.tried) EXPECT_FALSE(std::isinf(one.error));
 }
 
 TEST(Search, NoSetIsMeasuredTwiceAndNoneHasTwoWordsForOneThing) {
@@ -176,6 +285,12 @@ TEST(Choice, ByCountDividesTheCostsEvenly) {
   EXPECT_EQ(byCount(kFront, 2, 100), (std::vector<size_t>{0, 5}));
   EXPECT_EQ(byCount(kFront, 16, 100), (std::vector<size_t>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(byCount(kFront, 4, 0.05), (std::vector<size_t>{0}));
+}
+
+/// 4 cycles more than half the way, but half as wrong.
+TEST(Choice, ByCountTakesOneThatIsMuchLessWrong) {
+  const std::vector<Tried> front{{{}, 400, 0}, {{"a"}, 304, 0.4}, {{"b"}, 300, 0.9}, {{"c"}, 200, 1.8}};
+  EXPECT_EQ(byCount(front, 3, 2), (std::vector<size_t>{0, 1, 3}));
 }
 
 TEST(Choice, ByErrorTakesTheCheapest) {

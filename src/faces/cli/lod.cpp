@@ -67,8 +67,14 @@ void printLevels(const Levels& levels) {
 
 std::string textOf(const LodStep& step) {
   const std::string cached = step.cached == 0 ? "" : fmt::format(", {} from the cache", step.cached);
-  return fmt::format("material {} of {}, {}: {} shaders measured{}", step.done + 1, step.known,
-                     printable(step.material), step.measured, cached);
+  const auto stage = [&] {
+    if (step.stage == LodStep::Stage::Words) return fmt::format("{} of {} words", step.at, step.of);
+    const bool sets = step.stage == LodStep::Stage::Sets;
+    return fmt::format("{} {} of {}{}", sets ? "step" : "level", step.at + 1, sets ? "at most " : "",
+                       step.of);
+  };
+  return fmt::format("material {} of {}, {}, {}: {} shaders measured{}", step.done + 1, step.known,
+                     printable(step.material), stage(), step.measured, cached);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "cost/cost.h"
@@ -145,20 +144,8 @@ private:
     std::string path;
     material::Document document;
     std::optional<graph::Graph> graph;
-    Key content{};  ///< of all that the file's text is made of, where results are kept
+    Key content{};  ///< of a graph's file, where results are kept
   };
-
-  Key contentOf(const Input& input) const {
-    KeyBuilder content;
-    if (store_ == nullptr) return {};
-    Strings files{input.path};
-    files.insert(files.end(), input.document.included.begin(), input.document.included.end());
-    for (const std::string& file : files) {
-      const Result<std::string> bytes = readFile(file);
-      content.number(bytes.has_value()).key(keyOf(bytes ? *bytes : std::string()));
-    }
-    return content.finish();
-  }
 
   void readGraph(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
     Result<graph::Graph> graph = readGraphFile(file, options_);
@@ -167,7 +154,9 @@ private:
     if (!only.empty() && std::find(only.begin(), only.end(), graph->name) == only.end()) return;
     ++known_;
     inputs.push_back({file, {}, std::move(*graph)});
-    inputs.back().content = contentOf(inputs.back());
+    if (store_ == nullptr) return;
+    const Result<std::string> bytes = readFile(file);
+    inputs.back().content = keyOf(bytes ? *bytes : std::string());
   }
 
   void read(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
@@ -182,7 +171,6 @@ private:
     known_ +=
         static_cast<size_t>(std::count_if(document->materials.begin(), document->materials.end(), wanted));
     inputs.push_back({document->path, std::move(*document), {}});
-    inputs.back().content = contentOf(inputs.back());
     for (material::Material& material : inputs.back().document.materials) {
       if (!wanted(material)) material.index = -2;  // not asked for; its place in the list stays its number
     }
@@ -243,15 +231,19 @@ private:
 
   /// What is measured is kept, and said, after so many sets.
   std::vector<std::optional<lod::Tried>> inBatches(LodMaterial& subject, const std::vector<lod::Words>& sets,
+                                                   double most, const lod::Stage& stage,
                                                    const MaterialLevels& of) const {
     const size_t together = std::max<size_t>(16, 4 * threads());
     std::vector<std::optional<lod::Tried>> all;
     for (size_t i = 0; i < sets.size(); i += together) {
       const auto begin = sets.begin() + static_cast<ptrdiff_t>(i);
       const auto end = begin + static_cast<ptrdiff_t>(std::min(together, sets.size() - i));
-      for (std::optional<lod::Tried>& one : subject.measure({begin, end}, true))
+      for (std::optional<lod::Tried>& one : subject.measure({begin, end}, most))
         all.push_back(std::move(one));
-      if (lod_.step) lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered()});
+      if (!lod_.step) continue;
+      const bool words = stage.what == lod::Stage::Of::Words;
+      lod_.step({of.file, of.name, done_, known_, subject.measured(), subject.remembered(),
+                 static_cast<LodStep::Stage>(stage.what), words ? all.size() : stage.at, stage.of});
     }
     return all;
   }
@@ -264,8 +256,9 @@ private:
 
   /// Everything that is worth to be tried, and the best of it.
   void search(LodMaterial& subject, const lod::Tried& exact, LodChain& made) const {
-    const lod::Measure measure = [&](const std::vector<lod::Words>& sets) {
-      return inBatches(subject, sets, made.found);
+    lod::Stage stage;
+    const lod::Measure measure = [&](const std::vector<lod::Words>& sets, double most) {
+      return inBatches(subject, sets, most, stage, made.found);
     };
     const lod::Subject of_word = [](const std::string& word) { return lacquer::subjectOf(word); };
     lod::Bounds bounds;
@@ -275,30 +268,25 @@ private:
     advice.refit = [&](const lod::Words& words) { return subject.fitted(words); };
     advice.same = [&](const lod::Words& a, const lod::Words& b) { return subject.same(a, b); };
     advice.choose = [&](const std::vector<lod::Tried>& front) { return chosen(front); };
-    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure, advice);
-    // The search is by small pictures; levels are chosen by those of the size that was asked for.
-    const std::vector<lod::Tried> front = lod::front(made.tried);
-    for (const size_t place : around(chosen(front), front.size())) {
-      lod::Tried one = front[place];
-      const Result<LevelFigures> seen = subject.seen(one.words, false);
-      if (!seen) continue;
-      one.error = seen->error.delta_e;
-      made.best.push_back(std::move(one));
-    }
-    made.best = lod::front(std::move(made.best));
+    advice.stage = [&](const lod::Stage& begins) { stage = begins; };
+    advice.limit = [&](const lod::Tried& level, bool last) { return limitOf(level, last); };
+    advice.look = [&](const lod::Words& words) -> std::optional<double> {
+      const Result<LevelFigures> seen = subject.seen(words, false);
+      return seen ? std::optional(seen->error.delta_e) : std::nullopt;
+    };
+    lod::Searched searched = lod::search(exact, subject.words(), of_word, bounds, measure, advice);
+    made.tried = std::move(searched.tried);
+    made.best = std::move(searched.best);
     made.found.measured = made.tried.size();
   }
 
-  /// Places, and those beside them.
-  static std::set<size_t> around(const std::vector<size_t>& places, size_t count) {
-    constexpr size_t kBeside = 2;
-    std::set<size_t> all;
-    for (const size_t place : places) {
-      for (size_t i = place - std::min(place, kBeside); i <= std::min(place + kBeside, count - 1); ++i)
-        all.insert(i);
+  /// Levels that are asked for by their errors, and the last of a number, may be as wrong as was asked for.
+  std::optional<double> limitOf(const lod::Tried& level, bool last) const {
+    for (const double most : lod_.errors) {
+      if (level.error <= most) return most;
     }
-    all.insert(0);
-    return all;
+    const bool by_count = lod_.errors.empty() && lod_.costs.empty();
+    return by_count && last ? std::optional(lod_.most_error) : std::nullopt;
   }
 
   /// Level `k` of `count` with the exact one, from the largest size to the smallest by equal factors.
@@ -447,12 +435,14 @@ private:
     for (const auto& [path, bytes] : files) outputs.push_back(lod_.output + "/" + path);
     if (Diagnostics wrong = clashes(inputs_, outputs); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
-    const Strings earlier = listedShaders(lod_.output + "/manifest.json");
+    Scratch scratch(lod_.output);
+    LeftShaders left(lod_.output, scratch, listedShaders(lod_.output + "/manifest.json"));
+    left.expect(shaders);
     for (const auto& [path, bytes] : files) {
-      const Result<bool> written = writeFile(lod_.output + "/" + path, bytes, {nullptr, options_.sync});
+      const Result<bool> written = writeFile(lod_.output + "/" + path, bytes, {&scratch, options_.sync});
       if (!written) return tl::make_unexpected(written.error());
     }
-    removeStale(lod_.output, earlier, shaders, inputs_);
+    left.remove(shaders, inputs_);
     return {};
   }
 

@@ -89,6 +89,33 @@ Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options
   return cost::Subject{"level", std::move(data.spirv[0]), std::move(data.spirv[1])};
 }
 
+/// Of all that a material says, its name and its place in the file excepted.
+void addMaterial(const material::Material& material, KeyBuilder& key) {
+  const auto all = [&](const auto& numbers) {
+    key.number(std::size(numbers));
+    for (const auto x : numbers) key.number(x);
+  };
+  key.number(material.numbers.size()).number(material.textures.size());
+  for (const material::Material::Number& number : material.numbers) {
+    key.number(number.property);
+    all(number.value);
+  }
+  for (const material::Material::Texture& texture : material.textures) {
+    const gltf::TextureInfo& info = texture.info;
+    key.number(texture.property).number(info.image).number(info.texCoord).text(info.group).text(info.output);
+    all(info.channels), all(info.members), all(info.animated.members);
+    const gltf::TextureTransform transform = info.transform.value_or(gltf::TextureTransform());
+    key.number(info.transform.has_value()).number(transform.rotation);
+    all(transform.offset), all(transform.scale);
+    for (const bool moves : {info.animated.offset, info.animated.rotation, info.animated.scale})
+      key.number(moves);
+  }
+  all(material.animated), all(material.extensions);
+  key.text(material.patterns ? graph::toJson(*material.patterns) : std::string());
+  key.text(material.closures).text(material.displacement).number(material.ports.size());
+  for (const auto& [port, output] : material.ports) key.text(port).text(output);
+}
+
 Key codeOf(const cost::Subject& subject) {
   KeyBuilder key;
   for (const cost::Spirv* words : {&subject.vertex, &subject.fragment})
@@ -248,11 +275,17 @@ void LodMaterial::readTextures(EvalMaterial& evaluated) {
   }
 }
 
-/// Everything that results depend on: the build, the file, its images, its geometry, the options, and who
-/// counts cycles.
+/// Everything that results depend on: the build, the material, its images, its geometry, the options, and who
+/// counts cycles; nothing of the file's other materials.
 Key LodMaterial::keyOf(const EvalMaterial& evaluated) const {
   KeyBuilder key;
   key.text("levels").key(given_.store->base).key(given_.file).text(given_.subject.pointer());
+  if (given_.subject.material() != nullptr) addMaterial(*given_.subject.material(), key);
+  const gltf::VertexAttributes& has = given_.attributes;
+  for (const bool one : {has.normal, has.tangent, has.color0, has.skin[0], has.skin[1], has.morph,
+                         has.instances, has.quantized})
+    key.number(one);
+  for (const bool one : has.texCoord) key.number(one);
   key.text(exact_graph_).text(shaderId(*exact_module_, given_.language));
   addOptions(given_.options, {Decides::Graph, Decides::Module}, key);
   for (const std::string& texel : given_.texels) key.text(texel);
@@ -315,10 +348,7 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
     }
   }
   const std::vector<std::optional<lod::Tried>> measured = measure({{}});
-  if (measured[0]) {
-    exact_vertex_ = figures({}).vertex_cycles;
-    exact_cost_ = measured[0]->cost;
-  }
+  if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
   if (!measured[0]) return fail("cost-unknown", {}, "the material's own shader could not be measured");
   return *measured[0];
 }
@@ -413,76 +443,105 @@ bool LodMaterial::same(const lod::Words& a, const lod::Words& b) {
   return !id.empty() && id == idOf(b);
 }
 
+/// Whether an earlier run knows enough of a set.
+bool LodMaterial::remembers(const lod::Words& set, double most) {
+  std::optional<lod::Found> known = memory_.found(set);
+  const bool drawn = known.has_value();
+  if (!drawn) known = memory_.undrawn(set);
+  if (!known || (!drawn && known->figures.cost <= most)) return false;
+  ++remembered_;
+  if (known->shader.empty()) return true;
+  ids_[set] = known->shader;
+  (drawn ? figures_ : undrawn_).emplace(known->shader, known->figures);
+  return true;
+}
+
+/// What is known of a set after it was measured.
+std::optional<lod::Tried> LodMaterial::triedOf(const lod::Words& set, double most, bool remembered) {
+  const auto id = ids_.find(set);
+  if (id == ids_.end()) return std::nullopt;
+  const auto drawn = figures_.find(id->second);
+  const auto undrawn = undrawn_.find(id->second);
+  if (drawn == figures_.end() && undrawn == undrawn_.end()) return std::nullopt;
+  const LevelFigures& figures = drawn == figures_.end() ? undrawn->second : drawn->second;
+  if (!remembered) {
+    if (drawn == figures_.end())
+      memory_.keepUndrawn(set, {id->second, figures});
+    else
+      memory_.keep(set, {id->second, figures});
+  }
+  // A search that goes on where it was ended makes the same steps, whatever came after them.
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  return lod::Tried{set, figures.cost, figures.cost > most ? kUnknown : figures.error.delta_e};
+}
+
 std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lod::Words>& sets,
-                                                            bool cheaper) {
+                                                            double most) {
   std::vector<ir::Module> fresh;
   std::vector<bool> remembered(sets.size(), false);
   std::vector<std::pair<std::string, const lod::Words*>> of_fresh;
   for (size_t i = 0; i < sets.size(); ++i) {
     const lod::Words& set = sets[i];
-    if (const std::optional<lod::Found> known = memory_.found(set)) {
-      remembered[i] = true;
-      ++remembered_;
-      if (known->shader.empty()) continue;
-      ids_[set] = known->shader;
-      figures_.emplace(known->shader, known->figures);
-      continue;
-    }
+    remembered[i] = remembers(set, most);
+    if (remembered[i]) continue;
     Result<ir::Module> made = module(set);
     if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings) {
       memory_.keep(set, {});
       continue;
     }
     std::string id = shaderId(*made, given_.language);
+    const auto undrawn = undrawn_.find(id);
     const bool known =
-        figures_.contains(id) || dear_.contains(id) ||
+        figures_.contains(id) || (undrawn != undrawn_.end() && undrawn->second.cost > most) ||
         std::any_of(of_fresh.begin(), of_fresh.end(), [&](const auto& one) { return one.first == id; });
     ids_[set] = id;
     if (known) continue;
     of_fresh.emplace_back(std::move(id), &set);
     fresh.push_back(std::move(*made));
   }
-  // The driver compiles in a process of its own: what pictures need is made beside it.
-  const std::launch how = given_.options.jobs == 1 ? std::launch::deferred : kBeside;
+  draw(fresh, of_fresh, most);
+  std::vector<std::optional<lod::Tried>> tried;
+  for (size_t i = 0; i < sets.size(); ++i) tried.push_back(triedOf(sets[i], most, remembered[i]));
+  return tried;
+}
+
+/// Costs of shaders, and pictures of those that cost no more than `most`.
+void LodMaterial::draw(const std::vector<ir::Module>& fresh,
+                       const std::vector<std::pair<std::string, const lod::Words*>>& of_fresh, double most) {
+  // The driver compiles in a process of its own: what pictures need is made beside it. One core does that
+  // later, and only for those that are drawn.
+  const bool beside = given_.options.jobs != 1;
   std::future<Result<std::vector<LevelFigures>>> costing =
-      std::async(how, [&] { return costs(fresh, false); });
+      std::async(beside ? kBeside : std::launch::deferred, [&] { return costs(fresh, false); });
   std::vector<LevelFigures> seen(fresh.size());
   std::vector<uint8_t> drawn(fresh.size(), 0);  // by several threads
   // Images are read by one thread; what is seen of the meshes is known from the exact shader's pictures.
   std::vector<std::optional<std::vector<preview::Shading>>> made(fresh.size());
-  for (size_t i = 0; i < fresh.size(); ++i) {
+  const auto prepare = [&](size_t i) {
     Messages said_before;
     if (auto one = shadings(*of_fresh[i].second, said_before)) made[i] = std::move(*one);
-  }
+  };
+  for (size_t i = 0; beside && i < fresh.size(); ++i) prepare(i);
   const Result<std::vector<LevelFigures>> costs = costing.get();
-  const auto dear = [&](size_t i) { return cheaper && exact_cost_ && (*costs)[i].cost > *exact_cost_; };
-  inParallel(costs ? fresh.size() : 0, [&](size_t i) {
-    if (!made[i] || dear(i)) return;
+  if (!costs) return;
+  for (size_t i = 0; !beside && i < fresh.size(); ++i) {
+    if ((*costs)[i].cost <= most) prepare(i);
+  }
+  inParallel(fresh.size(), [&](size_t i) {
+    if (!made[i] || (*costs)[i].cost > most) return;
     const bool triangles = atVertices(*of_fresh[i].second);
     const std::vector<preview::Shot> shot = shotsOf(*made[i], kSearched, kSearchedGrid, triangles);
     compare(small_[triangles], shot, seen[i].error, seen[i].error_on_geometry, false);
     made[i].reset();
     drawn[i] = 1;
   });
-  for (size_t i = 0; costs && i < fresh.size(); ++i) {
-    if (dear(i)) dear_.insert(of_fresh[i].first);
+  for (size_t i = 0; i < fresh.size(); ++i) {
+    if ((*costs)[i].cost > most) undrawn_.emplace(of_fresh[i].first, (*costs)[i]);
     if (drawn[i] == 0) continue;
     LevelFigures& figures = figures_.emplace(of_fresh[i].first, (*costs)[i]).first->second;
     figures.error = seen[i].error;
     figures.error_on_geometry = seen[i].error_on_geometry;
   }
-  std::vector<std::optional<lod::Tried>> tried(sets.size());
-  for (size_t i = 0; i < sets.size(); ++i) {
-    const auto id = ids_.find(sets[i]);
-    const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
-    if (found == figures_.end()) {
-      if (id != ids_.end() && dear_.contains(id->second)) memory_.keep(sets[i], {});
-      continue;
-    }
-    if (!remembered[i]) memory_.keep(sets[i], {id->second, found->second});
-    tried[i] = lod::Tried{sets[i], found->second.cost, found->second.error.delta_e};
-  }
-  return tried;
 }
 
 // -- fitting --
@@ -539,9 +598,22 @@ std::vector<double> labsOf(const std::vector<preview::Shot>& shots) {
   return labs;
 }
 
-double squares(const std::vector<double>& a, const std::vector<double>& b) {
+/// How wrong colours look, CIEDE2000, all together; the weights are such that squares of what they differ by,
+/// times these, come to the same.
+double differenceOf(const std::vector<double>& a, const std::vector<double>& b,
+                    std::vector<double>& weights) {
+  constexpr double kLeast = 0.01;  // what is nearly right already has no more weight
   double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  weights.resize(a.size() / 3);
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const picture::Color one{a[3 * i], a[3 * i + 1], a[3 * i + 2]};
+    const picture::Color other{b[3 * i], b[3 * i + 1], b[3 * i + 2]};
+    const double seen = picture::deltaE2000(one, other);
+    double squares = 0;
+    for (size_t c = 0; c < 3; ++c) squares += (one[c] - other[c]) * (one[c] - other[c]);
+    weights[i] = std::max(seen, kLeast) / std::max(squares, kLeast * kLeast);
+    sum += seen;
+  }
   return sum;
 }
 
@@ -561,18 +633,19 @@ std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<doubl
   return b;
 }
 
-/// The step of Levenberg and Marquardt's least squares.
+/// The step of Levenberg and Marquardt's least squares, of weighted colours.
 std::vector<double> stepOf(const std::vector<std::vector<double>>& slopes, const std::vector<double>& now,
-                           const std::vector<double>& wanted, double damping) {
+                           const std::vector<double>& wanted, const std::vector<double>& weights,
+                           double damping) {
   const size_t n = slopes.size();
   std::vector<std::vector<double>> normal(n, std::vector<double>(n, 0.0));
   std::vector<double> right(n, 0.0);
   for (size_t i = 0; i < n; ++i) {
     for (size_t j = 0; j <= i; ++j) {
-      for (size_t k = 0; k < now.size(); ++k) normal[i][j] += slopes[i][k] * slopes[j][k];
+      for (size_t k = 0; k < now.size(); ++k) normal[i][j] += weights[k / 3] * slopes[i][k] * slopes[j][k];
       normal[j][i] = normal[i][j];
     }
-    for (size_t k = 0; k < now.size(); ++k) right[i] += slopes[i][k] * (wanted[k] - now[k]);
+    for (size_t k = 0; k < now.size(); ++k) right[i] += weights[k / 3] * slopes[i][k] * (wanted[k] - now[k]);
     normal[i][i] *= 1 + damping;
   }
   return solved(normal, right);
@@ -636,7 +709,8 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
   const std::vector<double> wanted = labsOf(fit_[triangles]);
   std::vector<double> now = labsWith(scales);
   if (now.size() != wanted.size()) return std::nullopt;
-  double error = squares(now, wanted);
+  std::vector<double> weights, weights_then;
+  double error = differenceOf(now, wanted, weights);
   double damping = 1e-2;
   bool done = false;
   for (int round = 0; round < kRounds && !done; ++round) {
@@ -650,7 +724,7 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
       slopes.push_back(std::move(slope));
     }
     for (int taken = 0; taken < kSteps && !done; ++taken) {
-      std::vector<double> step = stepOf(slopes, now, wanted, damping);
+      std::vector<double> step = stepOf(slopes, now, wanted, weights, damping);
       std::vector<double> next = scales;
       for (size_t i = 0; i < next.size(); ++i) {
         next[i] = std::clamp(next[i] + step[i], kLeast, std::min(kMost, 1 / parameters[i].value));
@@ -659,7 +733,7 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
       std::vector<double> then = labsWith(next);
       if (then.size() != now.size()) return std::nullopt;
       learnSlopes(step, now, then, slopes);
-      const double with = squares(then, wanted);
+      const double with = differenceOf(then, wanted, weights_then);
       if (!(with < error)) {
         damping *= 10;
         continue;
@@ -667,6 +741,7 @@ std::optional<lod::Words> LodMaterial::fit(const lod::Words& given) const {
       done = with > 0.999 * error;
       scales = std::move(next);
       now = std::move(then);
+      weights = weights_then;
       error = with;
       damping *= 0.3;
     }

@@ -1,6 +1,7 @@
 // One material, or a graph, while its levels are looked for: simpler shaders of it, measured.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -40,7 +41,7 @@ public:
     const preview::Mesh& mesh;          ///< the file's own geometry; without triangles where there is none
     double radius;                      ///< of the ball where there is no geometry
     const LevelStore* store = nullptr;  ///< null where nothing is kept
-    Key file{};                         ///< of what the subject was read from, where something is
+    Key file{};                         ///< of what a graph was read from, where something is
   };
   /// What is given must outlive this. Pictures that levels are chosen by are `size` pixels wide; those to
   /// search by have kSearched.
@@ -50,9 +51,10 @@ public:
   Result<lod::Tried> open(Messages& messages);
   /// The words that change the material's graph, those for its textures' means among them.
   lod::Words words() const;
-  /// For lod::search(). A set that makes no shader, or one with other textures, is none; with `cheaper` one
-  /// that costs more than the exact shader is none, either, and nobody draws it.
-  std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets, bool cheaper = false);
+  /// For lod::search(). A set that makes no shader, or one with other textures, is none; nobody draws one
+  /// that costs more than `most`.
+  std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets,
+                                                 double most = std::numeric_limits<double>::infinity());
   /// Whether two sets make one shader; false where one of them makes none.
   bool same(const lod::Words& a, const lod::Words& b);
   /// The same words with a few numbers of the material fitted again to the exact pictures;
@@ -100,6 +102,10 @@ private:
                                                   uint32_t grid) const;
   std::vector<preview::Shot> shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
                                      uint32_t grid, bool triangles) const;
+  bool remembers(const lod::Words& set, double most);
+  std::optional<lod::Tried> triedOf(const lod::Words& set, double most, bool remembered);
+  void draw(const std::vector<ir::Module>& fresh,
+            const std::vector<std::pair<std::string, const lod::Words*>>& of_fresh, double most);
   double costOf(const LevelFigures& figures) const;
   const std::string& idOf(const lod::Words& words);
   static std::vector<double> scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters);
@@ -132,9 +138,8 @@ private:
   std::map<Key, cost::Statistics> statistics_;   ///< of code without its disassembly, by the code
   std::string driver_;
   cost::Driver compiler_{cost::kFamilies[0]};
-  std::set<std::string> dear_;            ///< shaders that cost more than the exact one
-  std::optional<double> exact_cost_;      ///< once it is measured
-  std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
+  std::map<std::string, LevelFigures> undrawn_;  ///< by shader, of those that cost too much to be drawn
+  std::optional<uint64_t> exact_vertex_;         ///< cycles of the exact shader's vertex stage
   lod::Memory memory_;
   size_t remembered_ = 0;
 };

@@ -66,7 +66,7 @@ Result<std::optional<std::vector<Moved>>> moves(const LodMaterial::Given& given,
     return std::max(vertexCycles(module, family) - at_vertices, 0.0);
   };
   size_t done = 0, known = 0;
-  const Measure measure = [&](const std::vector<Words>& sets) {
+  const Measure measure = [&](const std::vector<Words>& sets, double) {
     const size_t together = std::max<size_t>(16, 4 * threads());
     known += sets.size();
     std::vector<std::optional<Tried>> tried;
@@ -86,8 +86,9 @@ Result<std::optional<std::vector<Moved>>> moves(const LodMaterial::Given& given,
   Bounds bounds;
   bounds.most_error = kMostSeen;
   const Tried first{{}, fragmentCycles(*exact, family), 0};
-  const std::vector<Tried> best = front(search(
-      first, nodesOf(searched, plain), [](const std::string& word) { return word; }, bounds, measure));
+  const Subject of_word = [](const std::string& word) { return word; };
+  const std::vector<Tried> best =
+      front(search(first, nodesOf(searched, plain), of_word, bounds, measure).tried);
 
   // The forms of each of them that are equal to it may be cheaper still.
   Options optimized = plain;

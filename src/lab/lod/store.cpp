@@ -51,6 +51,10 @@ std::optional<Found> Memory::found(const Words& words) const { return foundAs("l
 
 void Memory::keep(const Words& words, const Found& found) const { keepAs("level", words, found); }
 
+std::optional<Found> Memory::undrawn(const Words& words) const { return foundAs("cost", words); }
+
+void Memory::keepUndrawn(const Words& words, const Found& found) const { keepAs("cost", words, found); }
+
 std::optional<std::string> Memory::shader(const Words& words) const { return load("shader", words); }
 
 void Memory::keepShader(const Words& words, const std::string& shader) const {

@@ -37,6 +37,9 @@ public:
 
   std::optional<Found> found(const Words& words) const;
   void keep(const Words& words, const Found& found) const;
+  /// What is known of a set that costs too much to be drawn.
+  std::optional<Found> undrawn(const Words& words) const;
+  void keepUndrawn(const Words& words, const Found& found) const;
   /// The shader that a set makes, empty where it makes none.
   std::optional<std::string> shader(const Words& words) const;
   void keepShader(const Words& words, const std::string& shader) const;
