@@ -23,8 +23,8 @@ export class Files {
   private kept = -1;
   private keptCamera = '';
   private writing: Promise<void> = Promise.resolve();
-  /** A file that came with the page, and what says in the list of files that it is shown. */
-  held: (name: string) => { input: Input; shown: () => void } | null = () => null;
+  /** A file that came with the page. */
+  held: (name: string) => Input | null = () => null;
 
   constructor(private readonly page: Page) {
     const picker = byId<HTMLInputElement>('picker');
@@ -132,7 +132,8 @@ export class Files {
     void this.forget();
     this.showName();
     const own = [...of.graphs.keys()].map((material) => of.names[material] || `material ${material}`);
-    if (own.length > 0) this.page.note(`the graph of ${own.join(', ')} is in the file's extras: this page reads it, other programs see the properties alone`);
+    const graphs = own.length > 0 ? `; the graph of ${own.join(', ')} is in the file's extras: this page reads it, other programs see the properties alone` : '';
+    this.page.note(`${name} is exported with all edits${graphs}`);
   }
 
   /** The materials as a MaterialX document, beside the file: that stays what is edited. */
@@ -146,7 +147,7 @@ export class Files {
     } catch (error) {
       return this.page.fail(error);
     }
-    if (said.length > 0) this.page.note(said.length === 1 ? said[0].text : `${said[0].text} (and ${said.length - 1} more)`);
+    this.page.note(...(said.length > 0 ? said.map(({ text }) => text) : ['the document says all that the materials say']));
   }
 
   // ---- addresses
@@ -182,8 +183,7 @@ export class Files {
     const [file] = names.split('/', 1), material = names.slice(file.length + 1);
     const held = this.held(file);
     if (!held) throw new Error(`the address opens ${file}, and the page has no such file`);
-    if (!(await this.replace(held.input))) return false;
-    held.shown();
+    if (!(await this.replace(held))) return false;
     const index = material === '' ? 0 : page.document!.names.indexOf(material);
     if (index < 0) throw new Error(`the address opens the material ${material}, and ${file} has none of this name`);
     page.choose(index);
@@ -203,6 +203,7 @@ export class Files {
     const name = byId('file');
     const edited = of?.isEdited ?? false;
     if (name.textContent !== (of?.file.name ?? '')) name.textContent = of?.file.name ?? '';
+    name.title = `${name.textContent}${edited ? ': it has edits that are in no file yet; a draft of them is kept' : ''}`;
     if (name.classList.contains('edited') !== edited) name.classList.toggle('edited', edited);
     const page = `${edited ? '• ' : ''}${of?.file.name ?? ''} – Lacquer`;
     if (document.title !== page) document.title = page;

@@ -150,9 +150,8 @@ export class Page {
     if (of.names.length > 0) this.choose(0);
     else this.showNoMaterial();
     this.compileOthers();
-    if (of.said.length > 0) this.note(of.said.length === 1 ? of.said[0].text : `${of.said[0].text} (and ${of.said.length - 1} more)`);
-    for (const text of [...of.moves.said, ...of.cameras.said]) this.noteMore(text);
-    if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
+    const refused = of.refused.map((text) => `${text}; the properties are shown`);
+    for (const text of [...refused, ...of.said.map(({ text }) => text), ...of.moves.said, ...of.cameras.said]) this.noteMore(text);
     this.files.changed();
   }
 
@@ -282,6 +281,12 @@ export class Page {
     }
   }
 
+  /** Those that have a place in the graph act, whether the graph has an error or not. */
+  private markProperties({ parameters = {}, textures = {} }: Partial<GraphJson>): void {
+    const pointers = new Set([...Object.values(parameters), ...Object.values(textures)].map(({ pointer }) => pointer ?? ''));
+    this.properties.mark({ pointers, own: this.of!.graphs.has(this.of!.material) });
+  }
+
   compile(): void {
     if (!this.of?.names.length) return this.viewport.redraw();
     const begin = performance.now();
@@ -292,9 +297,7 @@ export class Page {
     this.took = performance.now() - begin;
     if (made) {
       this.graphJson = made.graph;
-      const { parameters, textures } = made.graph;
-      const pointers = new Set([...Object.values(parameters), ...Object.values(textures)].map(({ pointer }) => pointer ?? ''));
-      this.properties.mark({ pointers, own: this.of.graphs.has(this.of.material) });
+      this.markProperties(made.graph);
       tell('id', made.look.id);
       const key = `${this.of.material} ${made.look.id} ${this.of.names.length}`;
       if (key !== this.othersOf) fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
@@ -302,7 +305,7 @@ export class Page {
     } else {
       // A graph of its own is shown with what is wrong in it.
       const text = this.of.graphs.get(this.of.material);
-      if (text !== undefined) this.graphJson = JSON.parse(text);
+      if (text !== undefined) this.markProperties((this.graphJson = JSON.parse(text) as GraphJson));
       if (text !== undefined && !this.viewport.looks.has(this.of.material)) this.compileProperties(text);
     }
     tell('took', `${this.took.toFixed(1)} ms`);
@@ -450,7 +453,8 @@ export class Page {
   }
   private showTerm(scroll: boolean): void {
     const found = selectTerm(byId('code'), this.selected, scroll);
-    tell('code-told', found || !this.nodeIs(this.selected) ? '' : `${this.selected} has no lines here: it is computed once for the material, or in another stage`);
+    const hasTerms = byId('code').querySelector('.term') !== null; // SPIR-V, say, has none
+    tell('code-told', found || !hasTerms || !this.nodeIs(this.selected) ? '' : `${this.selected} has no lines here: it is computed once for the material, or in another stage`);
   }
   private nodeIs(term: string): boolean {
     return this.nodesNow().some(({ id }) => this.termOf(id) === term);
@@ -521,9 +525,9 @@ export class Page {
     this.compile();
   }
 
-  /** Says it in the line below the picture. */
-  note(text: string): void {
-    this.notice = [messageOf(text, 'note')];
+  /** Says the first in the line below the picture, and all under Notes. */
+  note(...texts: string[]): void {
+    this.notice = texts.map((text) => messageOf(text, 'note'));
     this.showMessages();
   }
 
@@ -538,7 +542,9 @@ export class Page {
       byId('messages').replaceChildren(...all.map(({ level, text }) => h('li', { class: level }, text)));
     const error = all.find(({ level }) => level === 'error');
     const told = all.length > 0 ? `${all.length} message${all.length > 1 ? 's' : ''}` : '';
-    tell('status', error?.message ?? this.notice[0]?.message ?? told, error ? 'error' : '');
+    const [first, ...more] = this.notice;
+    const noted = first && `${first.message}${more.length > 0 ? ` (and ${more.length} more, under Notes)` : ''}`;
+    tell('status', error?.message ?? noted ?? told, error ? 'error' : '');
   }
 
   /** Says what is wrong and leaves everything as it is. */
@@ -711,15 +717,16 @@ async function start(): Promise<void> {
   const samples = embedded('samples');
   const all = [...own, ...samples];
   const choice = byId<HTMLSelectElement>('sample');
-  choice.replaceChildren(...all.map(({ name }, i) => h('option', { value: i }, name)));
-  let chosen = choice.value;
-  choice.addEventListener('change', () => void page.files.replace(inputOf(all[Number(choice.value)])).then((opened) => {
-    if (!opened) choice.value = chosen;
-    chosen = choice.value;
-  }));
+  // It says what may be opened; what is open is said beside it, once, wherever that came from.
+  choice.replaceChildren(h('option', { value: '', hidden: true }, 'Other files…'), ...all.map(({ name }, i) => h('option', { value: i }, name)));
+  choice.addEventListener('change', () => {
+    const input = inputOf(all[Number(choice.value)]);
+    choice.value = '';
+    void page.files.replace(input);
+  });
   page.files.held = (name) => {
-    const found = all.findIndex((each) => each.name === name);
-    return found < 0 ? null : { input: inputOf(all[found]), shown: () => (choice.value = chosen = String(found)) };
+    const found = all.find((each) => each.name === name);
+    return found ? inputOf(found) : null;
   };
   if (all.length > 0) page.open(inputOf(all[0]));
   await page.files.openAddress();

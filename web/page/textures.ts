@@ -58,7 +58,7 @@ export function slotRow(of: Document, slot: Slot, acts: SlotActs): { element: HT
     of.settle();
     acts.changed(true);
   });
-  const thumbnail = h('canvas', { width: kThumbnail, height: kThumbnail, class: 'thumbnail', 'aria-hidden': 'true' });
+  const thumbnail = h('canvas', { width: kThumbnail, height: kThumbnail, class: 'thumbnail', 'aria-hidden': 'true', click: () => choice.disabled || picker.click() });
   if (is) void drawThumbnail(of.file, sourceOf(item(of.json.textures, index)), thumbnail);
   const space = slot.srgb ? 'sRGB, a colour' : 'linear data';
   const tag = h('span', { class: 'gone', hidden: true });

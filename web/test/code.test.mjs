@@ -34,6 +34,18 @@ test('the text is copied and saved as `lacquer gen` writes it, under its name', 
     assert.equal(await page.textContent('#size'), `${readFileSync(join(out, 'essl', `${id}.frag.glsl`)).length} bytes`);
   }));
 
+test('a node is said to have no lines where the text has sections, and nowhere else', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await page.click('#code [data-term="base.direct"]');
+    assert.equal(await page.textContent('#code-told'), '');
+    await page.selectOption('#stage', 'vertex');
+    assert.match(await page.textContent('#code-told'), /^base\.direct has no lines here/);
+    for (const target of ['spirv', 'msl']) {
+      await page.selectOption('#target', target);
+      assert.equal(await page.textContent('#code-told'), '', target);
+    }
+  }, { size: kSmall }));
+
 test('the text is made with the options of `lacquer gen` that are chosen; the picture stays', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
     const id = await page.textContent('#id');
@@ -192,7 +204,7 @@ test('an address opens every material of the gallery', () =>
       }, name);
       assert.equal(await page.textContent('#status'), '', name);
     }
-    assert.equal(await page.evaluate(() => document.getElementById('sample').selectedOptions[0].text), 'gallery.gltf');
+    assert.equal(await page.evaluate(() => document.getElementById('file').textContent), 'gallery.gltf');
     for (const [bad, says] of [['#open=car.gltf/x', /the page has no such file/], ['#open=gallery.gltf/x', /gallery.gltf has none of this name/]]) {
       await page.evaluate((to) => (location.hash = to), bad);
       await page.waitForFunction((source) => new RegExp(source).test(document.getElementById('status').textContent), says.source);

@@ -417,3 +417,42 @@ test('values of nodes wait while a slider moves, and follow it when it rests', (
     const after = await color();
     assert.ok(after[1] > before[1] + 60, `${before} ${after}`);
   }));
+
+test('Fit shows all of a large graph, from which one comes nearer again', () =>
+  open(['examples/car_paint.gltf'], async (page) => {
+    await openGraph(page);
+    await page.click('#fit');
+    const outside = () => page.evaluate(() => {
+      const window = document.getElementById('graph').getBoundingClientRect();
+      return [...document.querySelectorAll('#graph .node')].filter((node) => {
+        const { left, top, right, bottom } = node.getBoundingClientRect();
+        return left < window.left || right > window.right || top < window.top || bottom > window.bottom;
+      }).map(({ dataset }) => dataset.box);
+    });
+    assert.deepEqual(await outside(), []);
+    const zoom = () => page.evaluate(() => window.lacquerPage.graph.editor.canvas.zoom);
+    const whole = await zoom();
+    await page.click('#zoom-out');
+    assert.equal(await zoom(), whole);
+    await page.click('#zoom-in');
+    assert.ok((await zoom()) > whole);
+  }));
+
+test("the palette's first is what has the name that was typed, of whatever types", () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await openGraph(page);
+    await page.click('#add-node');
+    await page.keyboard.type('mix');
+    assert.match(await page.textContent('.palette [aria-selected=true] b'), /^mix</);
+  }));
+
+test('what the graph has taken over is said where the graph has an error, too', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await page.evaluate(() => window.lacquerPage.editGraph((graph) => graph.removeNode('base.specular')));
+    await page.waitForSelector('#status.error');
+    const normal = page.locator('[data-slot="/materials/0/normalTexture"]');
+    assert.match(await normal.textContent(), /taken over by the graph/);
+    assert.ok(await normal.locator('select').first().isDisabled());
+    const roughness = page.locator('[data-pointer="/materials/0/pbrMetallicRoughness/roughnessFactor"]');
+    assert.ok(await roughness.locator('input[type=range]').isEnabled());
+  }));

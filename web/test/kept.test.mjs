@@ -145,3 +145,38 @@ test('on a phone the picture is on top and stays there', () =>
     const [after] = await tops();
     assert.ok(after >= 0 && after <= picture, `${after}`);
   }, { size: { width: 400, height: 820 } }));
+
+test("the file's name stands once, as long as there is room whole, and the page's own files are opened again", () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const shown = () => page.evaluate(() => {
+      const selects = [...document.querySelectorAll('header select')].map(({ selectedOptions: [option] }) => option?.text);
+      const file = document.getElementById('file');
+      return { times: [file.textContent, ...selects].filter((text) => text === file.textContent).length, isWhole: file.scrollWidth <= file.clientWidth };
+    });
+    assert.deepEqual(await shown(), { times: 1, isWhole: true });
+    const header = await page.textContent('header');
+    assert.ok(header.indexOf('clearcoat.gltf') < header.indexOf('Other files'));
+    // After a file of one's own none of the list is said to be open, and each can be opened.
+    await drop(page, [['mine.gltf', read('examples/core.gltf')]]);
+    assert.equal(await page.inputValue('#sample'), '');
+    await page.selectOption('#sample', '0');
+    await page.waitForFunction(() => document.getElementById('file').textContent === 'clearcoat.gltf');
+    await set(page, kRoughness, 0.125);
+    await page.selectOption('#sample', '0');
+    await page.click('.ask button[value=replace]');
+    await page.waitForFunction(() => !document.querySelector('#file.edited'));
+    assert.equal(await roughness(page), 0.7);
+  }));
+
+test('an export says what it did, in the place of what was said before, and all that a document lacks is under Notes', () =>
+  open(['examples/car_paint.gltf'], async (page) => {
+    const status = () => page.textContent('#status');
+    await page.click('#share');
+    await page.waitForFunction(() => /the address of the page/.test(document.getElementById('status').textContent));
+    await downloaded(page, '#export');
+    assert.equal(await status(), 'car_paint.gltf is exported with all edits');
+    await downloaded(page, '#export-mtlx');
+    assert.match(await status(), /coatAnisotropyRotation.*\(and 1 more, under Notes\)$/s);
+    assert.equal(await page.locator('#messages li').count(), 2);
+    assert.equal(await page.locator('#messages li', { hasText: 'not-said' }).count(), 2);
+  }));

@@ -141,3 +141,16 @@ test('channels of one picture are filled from grey ones, each for itself', () =>
     assert.equal(await page.textContent('#status'), '');
     assert.equal(await page.locator(`${slot(kBase)} >> text=channels from`).count(), 0, 'a colour is no packed data');
   }));
+
+test('a click on a thumbnail asks for a picture, unless the graph has taken the slot over', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.click(`${slot(kBase)} canvas`)]);
+    await chooser.setFiles({ name: 'leaf.png', mimeType: 'image/png', buffer: plain(0, 255, 0) });
+    await page.waitForSelector(`${slot(kBase)}:not(.empty)`);
+    await page.evaluate(() => window.lacquerPage.editGraph((graph) => graph.addNode('mine', 'schlick')));
+    let asked = 0;
+    page.on('filechooser', () => ++asked);
+    await page.click(`${slot('/materials/0/emissiveTexture')} canvas`);
+    await page.waitForTimeout(300);
+    assert.equal(asked, 0);
+  }));

@@ -3,7 +3,9 @@ import { h, svg } from '../dom';
 import { boundsOf } from './place';
 import { kHead, kNewOutput, kRow, type Box, type Place, type Port, type View, type Wire } from './view';
 
+/** By hand; all of a large graph may be smaller still. */
 const kNearest = 0.12;
+const kLeast = 0.01;
 const kLargest = 2.5;
 
 /** What a port is of, as the attributes of its element say it. */
@@ -139,7 +141,7 @@ export class Canvas {
   zoomBy(factor: number, clientX?: number, clientY?: number): void {
     const { left, top, width, height } = this.root.getBoundingClientRect();
     const [x, y] = [(clientX ?? left + width / 2) - left, (clientY ?? top + height / 2) - top];
-    const zoom = Math.min(Math.max(this.zoom * factor, kNearest), kLargest);
+    const zoom = Math.min(Math.max(this.zoom * factor, Math.min(kNearest, this.zoom)), kLargest);
     this.pan = { x: x - ((x - this.pan.x) * zoom) / this.zoom, y: y - ((y - this.pan.y) * zoom) / this.zoom };
     this.zoom = zoom;
     this.move();
@@ -151,7 +153,7 @@ export class Canvas {
     if (boxes.length === 0 || width === 0) return;
     const bounds = boundsOf(keys ? boxes : [...boxes, ...this.view!.comments]);
     const zoom = Math.min((width - 24) / bounds.width, (height - 24) / bounds.height, keys ? 1 : 1.25);
-    this.zoom = Math.min(Math.max(zoom, kNearest), kLargest);
+    this.zoom = Math.min(Math.max(zoom, kLeast), kLargest);
     this.pan = {
       x: width / 2 - (bounds.x + bounds.width / 2) * this.zoom, y: height / 2 - (bounds.y + bounds.height / 2) * this.zoom,
     };

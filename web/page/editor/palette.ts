@@ -163,7 +163,7 @@ export function rank(entry: Entry, words: string[]): number {
   let sum = 1;
   for (const word of words) {
     const name = entry.name.toLowerCase();
-    const at = name === word ? 100 : name.startsWith(word) ? 40 : name.includes(word) ? 20 : entry.category.toLowerCase().includes(word) ? 6 : entry.doc.toLowerCase().includes(word) ? 3 : 0;
+    const at = name === word ? 100 : name.replace(/<.*/, '') === word ? 90 : name.startsWith(word) ? 40 : name.includes(word) ? 20 : entry.category.toLowerCase().includes(word) ? 6 : entry.doc.toLowerCase().includes(word) ? 3 : 0;
     if (at === 0) return 0;
     sum += at;
   }
