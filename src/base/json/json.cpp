@@ -345,6 +345,12 @@ Json reread(std::string_view text) {
   return std::move(*json);
 }
 
+void dismantle(Json& json) noexcept {
+  if (!json.is_structured()) return;
+  for (Json& each : json) dismantle(each);
+  json.clear();
+}
+
 const Json* member(const Json& object, std::string_view key) {
   const auto* members = object.get_ptr<const Json::object_t*>();
   return members == nullptr ? nullptr : members->found(key);

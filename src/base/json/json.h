@@ -113,6 +113,10 @@ Result<Json> parse(std::string_view text, const std::string& file, const Limits&
 /// Reads back what this program has written, of any size. Throws std::logic_error where that is not JSON.
 Json reread(std::string_view text);
 
+/// Empties a value from its leaves up, which takes no memory: the destructor of a value that is not empty
+/// takes some, and the program ends where there is none.
+void dismantle(Json& json) noexcept;
+
 /// The member of an object; nullptr when there is none or when it is not an object.
 const Json* member(const Json& object, std::string_view key);
 /// The same, null where there is none.

@@ -46,8 +46,14 @@ std::vector<std::string> listedShaders(const std::string& path) {
   Result<std::string> text = readFile(path);
   if (!text) return listed;
   dropFiles(*text);
-  const Result<json::Json> manifest = json::parse(*text, path);
-  if (!manifest || json::member(*manifest, "lacquer") == nullptr) return listed;
+  Result<json::Json> manifest = json::parse(*text, path);
+  if (!manifest) return listed;
+  // Memory may have run out when it goes.
+  struct Dismantled {
+    json::Json& json;
+    ~Dismantled() { json::dismantle(json); }
+  } const dismantled{*manifest};
+  if (json::member(*manifest, "lacquer") == nullptr) return listed;
   const json::Json* shaders = json::member(*manifest, "shaders");
   if (shaders == nullptr || !shaders->is_object()) return listed;
   // What the paths are follows from the ids: a manifest that says otherwise has no say.
