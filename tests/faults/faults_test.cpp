@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -158,7 +159,12 @@ protected:
     const int status = faulty({fmt::format("LACQUER_FAULT={}:{}:{}", kind, n, action),
                                "LACQUER_FAULT_FOLDER=" + (root_ / "work/out").string()},
                               &said);
-    EXPECT_TRUE(std::find(exits.begin(), exits.end(), status) != exits.end())
+    // What frees JSON takes memory, and the program ends where there is none (docs/security.md): so it is at
+    // few places, which others are in another folder.
+    const bool freeing = kind == "alloc" && status == 128 + SIGABRT &&
+                         said.find("instance of 'std::bad_alloc'") != std::string::npos;
+    ended_ += freeing ? 1 : 0;
+    EXPECT_TRUE(freeing || std::find(exits.begin(), exits.end(), status) != exits.end())
         << where << ": " << status << "\n"
         << said;
     EXPECT_EQ(torn(), "") << where;
@@ -209,12 +215,14 @@ protected:
     EXPECT_FALSE(places.empty());
     size_t tried = 0;
     for (; tried < places.size() && !HasFailure(); ++tried) at(kind, places[tried], action, exits);
+    EXPECT_LE(ended_ * 20, places.size());
     std::cout << fmt::format("{} {}s, {} of {} places\n", kind, action, tried, count);
   }
 
   fs::path root_;
   Variety variety_;
   bool untouched_ = false;  ///< `work` is as `start`
+  size_t ended_ = 0;        ///< places where the program ended for want of memory to free JSON
   std::map<std::string, FileState> old_, new_;
 };
 
