@@ -129,8 +129,8 @@ public:
       const bool cut =
           cuts == nullptr ? !(size <= kUseful) : !known || std::binary_search(cuts->begin(), cuts->end(), id);
       if (!cut) continue;
-      // What is unknown is held by what it was made of, by classes: the graph has operands of sums and
-      // products in an order of its own.
+      // A value without a bound is held by its operands' bounds, found by class: the graph has operands of
+      // sums and products in an order of its own.
       bounds_.ends.push_back({id, kSelf, node.op, known ? size : 0});
       if (!known) {
         for (const Ref operand : node.operands()) end(at, classes_[operand], operand);

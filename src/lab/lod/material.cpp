@@ -456,7 +456,7 @@ bool LodMaterial::remembers(const lod::Words& set, double most) {
   return true;
 }
 
-/// What is known of a set after it was measured.
+/// A set's result once it was measured.
 std::optional<lod::Tried> LodMaterial::triedOf(const lod::Words& set, double most, bool remembered) {
   const auto id = ids_.find(set);
   if (id == ids_.end()) return std::nullopt;

@@ -63,7 +63,7 @@ private:
     double saved = 0, error = 0;
   };
 
-  /// What is known of the sets, by their order; those that nothing is known of are measured, and looked at
+  /// Results of the sets, in their order; sets without one are measured, and looked at
   /// unless they cost more than `limit`, or the exact shader.
   std::vector<std::optional<Tried>> measured(std::vector<Words> sets, std::optional<double> limit = {}) {
     const double most = limit.value_or(all_[0].cost);
@@ -249,7 +249,7 @@ private:
     double limit = 0;
   };
 
-  /// What would be levels, seen by larger pictures as is what comes behind them.
+  /// The sets that would be levels; larger pictures are made of them and of the set behind the last.
   std::vector<Chosen> levels() {
     std::vector<Tried> best;
     std::vector<size_t> places;

@@ -35,7 +35,7 @@ using Limit = std::function<std::optional<double>(const Tried& level, bool last)
 /// How wrong a set that was measured looks by larger pictures.
 using Look = std::function<std::optional<double>(const Words& words)>;
 
-/// What a search is at: words alone, sets that grow, or levels; which of them, and how many there are.
+/// The step of a search: words alone, sets that grow, or levels; its number, and how many there are.
 struct Stage {
   enum class Of { Words, Sets, Levels } what = Of::Words;
   size_t at = 0, of = 0;
