@@ -262,58 +262,52 @@ TEST_F(Levels, LeaveNoShadersOfAKilledRun) {
   EXPECT_FALSE(fs::exists(Scratch::below(out)));
 }
 
-TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
-  const Options options = quick();
-  const json& answer = chain();
-  const json& level = answer["materials"][0]["levels"].back();
-  Options named = options;
+/// The first material of a file, as levels are looked for.
+void withFile(const std::string& path, Options named, const std::function<void(LodMaterial&)>& look) {
   named.switches["specular_antialiasing"] = true;  // as in all levels
   const auto language = libraryFor(named);
   ASSERT_TRUE(language.has_value());
   ASSERT_TRUE(resolveNames(**language, named).has_value());
-  const auto document = readMaterials(work("w1"), **language, named);
+  const auto document = readMaterials(path, **language, named);
   ASSERT_TRUE(document.has_value());
-  FileImages images(work("w1"), named);
+  FileImages images(path, named);
   const Strings no_texels;
   const preview::Mesh no_mesh;
-  LodMaterial again({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
-                     named, no_texels, no_mesh, 1},
-                    16);
-  const auto words = level["simplify"].get<lod::Words>();
-  const auto exact = again.shots({}, 16, atVertices(words));
-  const auto simpler = again.shots(words, 16, atVertices(words));
-  ASSERT_TRUE(exact && simpler);
-  const SeenDifference seen = preview::compareShots(*exact, *simpler);
-  EXPECT_EQ(seen.delta_e, level["error"]["delta_e"]["mean"].get<double>());
-  EXPECT_EQ(seen.flip_95, level["error"]["flip"]["p95"].get<double>());
-  EXPECT_GT(seen.delta_e, 0);
+  LodMaterial material({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
+                        named, no_texels, no_mesh, 1},
+                       16);
+  look(material);
+}
+
+TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
+  const json& answer = chain();
+  const json& level = answer["materials"][0]["levels"].back();
+  withFile(work("w1"), quick(), [&](LodMaterial& again) {
+    const auto words = level["simplify"].get<lod::Words>();
+    const auto exact = again.shots({}, 16, atVertices(words));
+    const auto simpler = again.shots(words, 16, atVertices(words));
+    ASSERT_TRUE(exact && simpler);
+    const SeenDifference seen = preview::compareShots(*exact, *simpler);
+    EXPECT_EQ(seen.delta_e, level["error"]["delta_e"]["mean"].get<double>());
+    EXPECT_EQ(seen.flip_95, level["error"]["flip"]["p95"].get<double>());
+    EXPECT_GT(seen.delta_e, 0);
+  });
 }
 
 /// Numbers are fitted to what is seen: with squares of distances in L*a*b* 0.97 and 0.89 would be left.
 TEST_F(Levels, FittedNumbersLookLessWrong) {
-  Options named = quick();
-  named.switches["specular_antialiasing"] = true;
-  const auto language = libraryFor(named);
-  ASSERT_TRUE(language.has_value());
-  ASSERT_TRUE(resolveNames(**language, named).has_value());
-  const auto document = readMaterials(work("w1"), **language, named);
-  ASSERT_TRUE(document.has_value());
-  FileImages images(work("w1"), named);
-  const Strings no_texels;
-  const preview::Mesh no_mesh;
-  LodMaterial subject({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
-                       named, no_texels, no_mesh, 1},
-                      16);
-  Messages messages;
-  ASSERT_TRUE(subject.open(messages).has_value());
-  for (const char* word : {"without:coat", "lod:coat_base_lobe"}) {
-    const lod::Words words{word};
-    const std::optional<lod::Words> fitted = subject.fitted(words);
-    ASSERT_TRUE(fitted.has_value());
-    const std::vector<std::optional<lod::Tried>> found = subject.measure({words, *fitted});
-    ASSERT_TRUE(found[0] && found[1]);
-    EXPECT_LT(found[1]->error, 0.7 * found[0]->error) << word;
-  }
+  withFile(work("w1"), quick(), [&](LodMaterial& subject) {
+    Messages messages;
+    ASSERT_TRUE(subject.open(messages).has_value());
+    for (const char* word : {"without:coat", "lod:coat_base_lobe"}) {
+      const lod::Words words{word};
+      const std::optional<lod::Words> fitted = subject.fitted(words);
+      ASSERT_TRUE(fitted.has_value());
+      const std::vector<std::optional<lod::Tried>> found = subject.measure({words, *fitted});
+      ASSERT_TRUE(found[0] && found[1]);
+      EXPECT_LT(found[1]->error, 0.7 * found[0]->error) << word;
+    }
+  });
 }
 
 /// Highlights hold still in every level, unless somebody says no; nothing that is tried takes it off.
