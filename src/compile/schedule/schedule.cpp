@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
+#include <string>
+#include <string_view>
 
 #include "ir/loops.h"
 #include "ir/names.h"
@@ -220,17 +223,16 @@ private:
 
   void order() {
     names_.take(ir::kLightIndexName);
+    std::string longer;
+    const auto take = [&](std::string_view name, std::initializer_list<std::string_view> endings) {
+      for (const std::string_view ending : endings) names_.take(longer.assign(name).append(ending));
+    };
     for (const ir::Block& block : module_.blocks) {
-      for (const std::string& name : {block.name, block.instance}) {
-        names_.take(name);
-        names_.take(name + "s");
-        names_.take(name + "Block");
-      }
+      take(block.name, {"", "s", "Block"});
+      take(block.instance, {"", "s", "Block"});
     }
     for (const ir::TextureSlot& slot : module_.textures) {
-      const std::string& name = slot.array.empty() ? slot.boundName() : slot.array;
-      names_.take(name);
-      names_.take(name + "_sampler");
+      take(slot.array.empty() ? slot.boundName() : slot.array, {"", "_sampler"});
     }
     for (const uint32_t p : program_.parameters) names_.take(module_.parameters[p].constant_name);
     emitted_.assign(dag_.size(), false);

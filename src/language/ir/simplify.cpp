@@ -1,7 +1,9 @@
 #include "ir/simplify.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "ir/fold.h"
 
@@ -256,18 +258,18 @@ ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
     ValueId source;
     int index;
   };
-  std::vector<Pick> picks;
+  std::array<Pick, 16> storage;  // of a Mat4
+  size_t count = 0;
   for (const ValueId part : parts) {
     const Value value = dag_[part];
     for (int i = 0; i < componentCount(value.type); ++i) {
       const ValueId scalar = componentCount(value.type) == 1 ? part : dag_.component(part, i);
       const Value s = dag_[scalar];
-      if (s.op == Op::Swizzle)
-        picks.push_back({s.args[0], swizzleComponent(s.payload, 0)});
-      else
-        picks.push_back({scalar, 0});
+      storage[count++] =
+          s.op == Op::Swizzle ? Pick{s.args[0], swizzleComponent(s.payload, 0)} : Pick{scalar, 0};
     }
   }
+  const std::span<const Pick> picks(storage.data(), count);
   const auto constantAt = [&](const Pick& p) { return dag_.isConstant(p.source); };
   if (std::all_of(picks.begin(), picks.end(), constantAt)) {
     Components c{};
@@ -280,9 +282,9 @@ ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
       std::all_of(picks.begin(), picks.end(), [&](const Pick& p) { return p.source == picks[0].source; });
   if (one && componentCount(dag_[picks[0].source].type) > 1) {
     if (isComposite(type)) return kNoValue;
-    std::vector<int> order;
-    for (const Pick& p : picks) order.push_back(p.index);
-    return dag_.swizzle(picks[0].source, order);
+    std::array<int, 4> order{};
+    for (size_t i = 0; i < count; ++i) order[i] = picks[i].index;
+    return dag_.swizzle(picks[0].source, {order.data(), count});
   }
   if (one) return dag_.construct(type, {picks[0].source});
   // A part that is itself a Construct of scalars opens up, so that equal vectors built in two ways are one

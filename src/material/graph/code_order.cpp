@@ -31,7 +31,8 @@ public:
       : graph_(graph), library_(library), body_(body), also_(also) {}
 
   std::vector<size_t> run() {
-    sources_.resize(graph_.nodes.size());
+    by_node_.resize(graph_.nodes.size());
+    sources_.reserve(graph_.nodes.size());
     // As the ports ask for them, which also says what nobody asks for.
     const std::vector<size_t> reached = from(ports());
     std::vector<size_t> roots;
@@ -46,6 +47,11 @@ public:
   }
 
 private:
+  /// Of sources_.
+  struct Places {
+    size_t begin, end;
+  };
+
   std::vector<size_t> ports() const {
     std::vector<size_t> nodes;
     if (library_.has(lang::DeclKind::Template, graph_.template_name)) {
@@ -67,10 +73,9 @@ private:
   }
 
   /// In the order in which the library declares the inputs; found once for both walks.
-  const std::vector<size_t>& sourcesOf(size_t index) {
-    std::optional<std::vector<size_t>>& nodes = sources_[index];
-    if (nodes) return *nodes;
-    nodes.emplace();
+  Places sourcesOf(size_t index) {
+    std::optional<Places>& places = by_node_[index];
+    if (places) return *places;
     const Inputs& inputs = graph_.nodes[index].inputs;
     const std::span<const lang::Param> params = paramsOf(graph_.nodes[index], library_);
     found_.clear();
@@ -88,17 +93,16 @@ private:
     const auto before = [](const auto& a, const auto& b) { return a.first < b.first; };
     if (!std::is_sorted(found_.begin(), found_.end(), before))
       std::stable_sort(found_.begin(), found_.end(), before);
-    nodes->reserve(found_.size());
-    for (const auto& [of, source] : found_) nodes->push_back(source);
-    return *nodes;
+    places = {sources_.size(), sources_.size() + found_.size()};
+    for (const auto& [of, source] : found_) sources_.push_back(source);
+    return *places;
   }
 
   /// The roots and what they take values from, sources first; no stack, whatever the graph.
   std::vector<size_t> from(const std::vector<size_t>& roots) {
     struct Visit {
       size_t node;
-      const std::vector<size_t>* sources;
-      size_t next = 0;
+      Places left;
     };
     std::vector<size_t> order;
     std::vector<uint8_t> seen(graph_.nodes.size(), false);
@@ -108,14 +112,14 @@ private:
     const auto open = [&](size_t node) {
       if (seen[node]) return;
       seen[node] = true;
-      path.push_back({node, &sourcesOf(node)});
+      path.push_back({node, sourcesOf(node)});
     };
     for (const size_t root : roots) {
       open(root);
       while (!path.empty()) {
         Visit& visit = path.back();
-        if (visit.next < visit.sources->size()) {
-          open((*visit.sources)[visit.next++]);
+        if (visit.left.begin < visit.left.end) {
+          open(sources_[visit.left.begin++]);
         } else {
           order.push_back(visit.node);
           path.pop_back();
@@ -130,7 +134,8 @@ private:
   const Body& body_;
   const Source* also_;
   std::vector<std::pair<size_t, size_t>> found_;  ///< of a node: a parameter's place, and its source's
-  std::vector<std::optional<std::vector<size_t>>> sources_;  ///< by node, where they were asked for
+  std::vector<size_t> sources_;                   ///< of one node after the other
+  std::vector<std::optional<Places>> by_node_;    ///< where they were asked for
 };
 
 }  // namespace
