@@ -59,6 +59,7 @@ bool take(Device::State& state, VkPhysicalDevice physical) {
   state.halves = halves.shaderFloat16 == VK_TRUE;
   state.limits = properties.properties.limits;
   state.processor = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  state.logic = features.features.logicOp == VK_TRUE;
   state.name = properties.properties.deviceName;
   state.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   state.vk.GetPhysicalDeviceMemoryProperties(physical, &state.memory);
@@ -84,6 +85,9 @@ std::string makeDevice(Device::State& state) {
   halves.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES;
   halves.shaderFloat16 = VK_TRUE;
   if (state.halves) info.pNext = &halves;
+  VkPhysicalDeviceFeatures features{};
+  features.logicOp = state.logic ? VK_TRUE : VK_FALSE;
+  info.pEnabledFeatures = &features;
   const VkResult result = state.vk.CreateDevice(state.physical, &info, nullptr, &state.handle);
   if (result != VK_SUCCESS) {
     return fmt::format("{} cannot be opened (vkCreateDevice: {})", state.name, static_cast<int>(result));

@@ -44,6 +44,7 @@ struct Device::State {
   bool filters_floats = false;  ///< bilinear filtering of 32-bit floats
   bool halves = false;          ///< shaderFloat16
   bool processor = false;       ///< shaders run on the CPU, in this process
+  bool logic = false;           ///< the feature logicOp
   std::string name, driver;
 
   /// The position is one more.
