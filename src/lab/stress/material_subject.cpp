@@ -211,45 +211,78 @@ private:
     }
   }
 
-  const double* at(std::span<const double> samples, size_t point, const char* name) const {
-    return samples.data() + point / lanes * space.width() + space.find(name)->first;
+  /// A variable's numbers, by point: the points of one sample share them.
+  struct Numbers {
+    const double* first;
+    size_t width;  ///< of a sample
+    size_t lanes;
+
+    const double* operator[](size_t point) const { return first + point / lanes * width; }
+  };
+
+  Numbers numbers(std::span<const double> samples, std::string_view variable) const {
+    return {samples.data() + space.find(variable)->first, space.width(), lanes};
   }
 
-  /// Where a neighbour lies, and its texture coordinates.
-  void step(std::span<const double> samples, size_t i, eval::Point& point) const {
-    const double x = static_cast<double>(i % 2);
-    const double y = static_cast<double>(i / 2 % 2);
-    for (size_t c = 0; c < 3; ++c)
-      point.position[c] = x * at(samples, i, "position_dx")[c] + y * at(samples, i, "position_dy")[c];
-    for (std::array<double, 2>& uv : point.uv) {
-      for (size_t c = 0; c < 2; ++c) uv[c] = x * at(samples, i, "uv_dx")[c] + y * at(samples, i, "uv_dy")[c];
+  /// Where neighbours lie, and their texture coordinates.
+  void step(std::span<const double> samples, eval::PointColumns& points) const {
+    const auto put = [&](std::string_view column, int components, Numbers dx, Numbers dy) {
+      const auto n = static_cast<size_t>(components);
+      std::vector<double> values(points.count * n);
+      for (size_t i = 0; i < points.count; ++i) {
+        const double x = static_cast<double>(i % 2);
+        const double y = static_cast<double>(i / 2 % 2);
+        for (size_t c = 0; c < n; ++c) values[i * n + c] = x * dx[i][c] + y * dy[i][c];
+      }
+      points.columns[std::string(column)] = Column::perPoint(components, std::move(values));
+    };
+    put("position", 3, numbers(samples, "position_dx"), numbers(samples, "position_dy"));
+    for (const char* uv : {"uv0", "uv1", "uv2", "uv3"}) {
+      put(uv, 2, numbers(samples, "uv_dx"), numbers(samples, "uv_dy"));
     }
+  }
+
+  eval::PointColumns pointsOf(std::span<const double> samples, size_t count) const {
+    eval::PointColumns points{count, {}};
+    const auto put = [&](std::string_view column, int components, const auto& write) {
+      std::vector<double> values(count * static_cast<size_t>(components));
+      for (size_t i = 0; i < count; ++i) write(i, values.data() + i * static_cast<size_t>(components));
+      points.columns[std::string(column)] = Column::perPoint(components, std::move(values));
+    };
+    const auto unit = [&](std::string_view name) {
+      return [from = numbers(samples, name)](size_t i, double* to) {
+        const Vec3 direction = unitOf(from[i]);
+        std::copy(direction.begin(), direction.end(), to);
+      };
+    };
+    const auto scaled = [&](std::string_view name, std::string_view length_name) {
+      return [write = unit(name), length = numbers(samples, length_name)](size_t i, double* to) {
+        write(i, to);
+        for (size_t c = 0; c < 3; ++c) to[c] *= *length[i];
+      };
+    };
+    put("n", 3, scaled("n", "n_length"));
+    put("t", 4, [tangent = scaled("t", "t_length"), sign = numbers(samples, "t_sign")](size_t i, double* to) {
+      tangent(i, to);
+      to[3] = *sign[i] != 0 ? 1 : -1;
+    });
+    put("v", 3, unit("v"));
+    put("l", 3, unit("l"));
+    const Numbers color0 = numbers(samples, "color0");
+    put("color0", 4, [&](size_t i, double* to) { std::copy_n(color0[i], 4, to); });
+    const Numbers light = numbers(samples, "light");
+    put("light", 3, [&](size_t i, double* to) { std::copy_n(light[i], 3, to); });
+    const Numbers front_facing = numbers(samples, "front_facing");
+    put("front_facing", 1, [&](size_t i, double* to) { *to = *front_facing[i] != 0 ? 1 : 0; });
+    if (lanes > 1) step(samples, points);
+    return points;
   }
 
   /// `count` points, `lanes` of which are of one sample.
   eval::Bindings bind(std::span<const double> samples, size_t count) const {
-    std::vector<eval::Point> points(count);
-    for (size_t i = 0; i < count; ++i) {
-      eval::Point& point = points[i];
-      const Vec3 n = unitOf(at(samples, i, "n"));
-      const Vec3 t = unitOf(at(samples, i, "t"));
-      const double n_length = *at(samples, i, "n_length");
-      const double t_length = *at(samples, i, "t_length");
-      for (size_t c = 0; c < 3; ++c) {
-        point.n[c] = n[c] * n_length;
-        point.t[c] = t[c] * t_length;
-      }
-      point.t[3] = *at(samples, i, "t_sign") != 0 ? 1 : -1;
-      point.v = unitOf(at(samples, i, "v"));
-      point.l = unitOf(at(samples, i, "l"));
-      std::copy_n(at(samples, i, "color0"), 4, point.color0.begin());
-      std::copy_n(at(samples, i, "light"), 3, point.light.begin());
-      point.front_facing = *at(samples, i, "front_facing") != 0;
-      if (lanes > 1) step(samples, i, point);
-    }
     eval::Bindings bindings;
     bindings.quads = lanes > 1;
-    eval::bindPoints(module_, points, bindings);
+    eval::bindPoints(module_, pointsOf(samples, count), bindings);
     const size_t width = space.width();
     for (const Variable& variable : space.variables()) {
       if (variable.nature != Nature::Number && variable.nature != Nature::Index &&
@@ -301,8 +334,11 @@ private:
       const ir::Varying& varying = *varyings_[i];
       const auto components = static_cast<size_t>(ir::componentCount(varying.type));
       std::vector<double> column(values[i].begin(), values[i].end());
-      for (size_t k = 0; k < column.size() && (varying.name == "normal" || varying.name == "tangent"); ++k) {
-        if (k % components < 3) column[k] *= *at(samples, k / components, "interpolated");
+      if (varying.name == "normal" || varying.name == "tangent") {
+        const Numbers interpolated = numbers(samples, "interpolated");
+        for (size_t k = 0; k < column.size(); ++k) {
+          if (k % components < 3) column[k] *= *interpolated[k / components];
+        }
       }
       bindings.columns[varying.name] = Column::perPoint(static_cast<int>(components), std::move(column));
     }
