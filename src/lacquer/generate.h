@@ -160,7 +160,7 @@ struct MaterialReport {
 struct ShaderReport {
   std::string id;
   std::vector<std::pair<std::string, size_t>> files;  ///< path below the output folder, bytes
-  bool validated = false;                             ///< everything was compiled and validated, and is good
+  bool validated = false;  ///< no validator found a fault; the manifest says what each target had
 };
 struct Report {
   std::vector<MaterialReport> materials;              ///< in the order of the files

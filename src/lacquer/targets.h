@@ -16,14 +16,14 @@ struct TargetDescription {
   std::string name;            ///< of a-z, 0-9 and '-', beginning with a letter; the folder of its files, too
   std::string extension;       ///< of its files, of a-z and 0-9: ID.frag.pssl
   std::string prose;           ///< what it is, for people
-  Target like = Target::Hlsl;  ///< one with text of stages, not a registered one
+  Target like = Target::Hlsl;  ///< any but Spirv, Cpp, Js and registered ones
   /// What stands for an identifier of those texts, keywords and functions among them: {"cbuffer",
   /// "ConstantBuffer"}. One line of any text but comments. Comments and lines with '#' stay as they are.
   std::map<std::string, std::string, std::less<>> words;
   /// Lines that stand in place of the text's `#version`, or where there is none above its code.
   std::string opening;
-  /// Says what is wrong with the text of a stage; nothing when all is well. Called from several threads.
-  /// Without it nothing validates the texts.
+  /// Says what is wrong with the text of a stage; nothing when all is well. Called from several threads, anew
+  /// in each process: the cache keeps no such text. Without it nothing validates the texts.
   std::function<Strings(const std::string& text, bool vertex)> check;
 };
 

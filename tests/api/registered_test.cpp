@@ -140,6 +140,7 @@ TEST(Registered, ANameOfTheShaderIsNoWordOfTheTarget) {
   const Shader shader = shaderFor(target, false, messages);
   EXPECT_EQ(errorsOf(messages), "target-words");
   EXPECT_EQ(shader.fragmentText(target), "");
+  EXPECT_TRUE(has(messages[0].file, "clash/")) << messages[0].file;
 }
 
 TEST(Registered, WhatIsWrongIsRefused) {
@@ -194,6 +195,42 @@ TEST(Registered, CodeIsKeptByItsWords) {
       testing::ExitedWithCode(0), "");
   const std::string text = fragmentOfTwin("threefold", folder);
   EXPECT_TRUE(has(text, " threefold ") && !has(text, " triple ")) << text;
+  std::filesystem::remove_all(folder);
+}
+
+/// The shaders of an example in a target "checked", with what its check says of a fragment's text.
+Report reportOfChecked(const std::string& said, const std::filesystem::path& folder, Messages& messages) {
+  TargetDescription checked = described("checked", Target::Glsl);
+  checked.check = [said](const std::string&, bool vertex) {
+    return vertex || said.empty() ? Strings() : Strings{said};
+  };
+  Options options;
+  options.cache = (folder / "cache").string();
+  options.targets.resize(1);
+  if (!addTarget(checked, options.targets[0], messages)) return {};
+  return generate({std::string(LACQUER_EXAMPLES) + "/clearcoat.gltf"}, {}, (folder / "out").string(), options,
+                  messages);
+}
+
+/// Nothing can tell one check from another: what another program's said of the same text does not count.
+TEST(Registered, ACheckIsAskedInEachProcess) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "lacquer-checked";
+  EXPECT_EXIT(
+      {
+        std::filesystem::remove_all(folder);
+        Messages messages;
+        std::exit(reportOfChecked("", folder, messages).ok == 1 ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
+  Messages messages;
+  const Report report = reportOfChecked("no such instruction", folder, messages);
+  EXPECT_EQ(report.ok, 0U);
+  EXPECT_EQ(messages.size(), report.shaders.size());
+  for (const Message& message : messages) {
+    EXPECT_EQ(message.code, "target-check");
+    EXPECT_TRUE(has(message.file, "checked/")) << message.file;
+  }
   std::filesystem::remove_all(folder);
 }
 

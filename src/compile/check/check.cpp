@@ -50,8 +50,11 @@ Diagnostics checkText(const std::string& text, Target target, Stage stage, const
   switch (row.checker) {
     case Checker::None:
     case Checker::Words: return {};
-    case Checker::Registered:
-      return row.check(text, stage == Stage::Vertex ? ir::Stage::Vertex : ir::Stage::Fragment);
+    case Checker::Registered: {
+      Diagnostics said = row.check(text, stage == Stage::Vertex ? ir::Stage::Vertex : ir::Stage::Fragment);
+      for (Diagnostic& one : said) one.place.file = name;
+      return said;
+    }
     case Checker::Tint: {
       Diagnostics said = compileWithTint(text, name);
       std::erase_if(said, [](const Diagnostic& one) { return one.severity != Severity::Error; });

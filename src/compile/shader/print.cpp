@@ -124,7 +124,10 @@ private:
     {
       const StageTimer timer(times_, StageOfRun::Print, row.id);
       Result<std::string> made = printed(row, stage);
-      if (!made) return append(wrongOf(row.id), made.error());
+      if (!made) {
+        for (Diagnostic& wrong : made.error()) wrong.place.file = shaderPath(row.id, shader_.id, stage);
+        return append(wrongOf(row.id), made.error());
+      }
       text = std::move(*made);
     }
     if (!validates(row.id)) return;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <random>
 #include <utility>
 
 #include "support/digest.h"
@@ -39,12 +40,14 @@ size_t endOfCopied(std::string_view text, size_t at) {
   return end;
 }
 
-Result<void> checkWords(const WordMap& words) {
-  for (const auto& [from, to] : words) {
+Result<void> checkWords(const Registered& target) {
+  for (const auto& [from, to] : target.words) {
     const bool lines = to.find_first_of("\n\r") != std::string::npos || to.find("//") != std::string::npos ||
                        to.find("/*") != std::string::npos;
     if (identifierOf(from) == from && !from.empty() && !to.empty() && !lines) continue;
-    return fail("target-words", {}, fmt::format("'{}' cannot stand for '{}'", printable(to), printable(from)),
+    return fail("target-words", {},
+                fmt::format("the target '{}': '{}' cannot stand for '{}'", target.name, printable(to),
+                            printable(from)),
                 "what is replaced is an identifier, what stands for it a text of one line without comments");
   }
   return {};
@@ -60,24 +63,31 @@ Result<void> check(const Registered& target) {
   constexpr size_t kMost = 32;
   const auto& all = rows();
   const auto taken = [&](const Row& row) { return row.name == target.name; };
-  if (!isWord(target.name, true) || std::any_of(all.begin(), all.end(), taken))
+  if (!isWord(target.name, true))
     return fail("target-name", {}, fmt::format("a target cannot be called '{}'", printable(target.name)),
-                "a name begins with a letter, has a-z, 0-9 and '-', and belongs to no other target");
+                "a name begins with a letter and has a-z, 0-9 and '-'");
+  if (std::any_of(all.begin(), all.end(), taken))
+    return fail("target-name", {}, fmt::format("there is a target '{}' already", target.name),
+                "a target has a name of its own, for the rest of the process");
   if (!isWord(target.extension, false))
-    return fail("target-extension", {}, fmt::format("files cannot end in '{}'", printable(target.extension)),
-                "an extension begins with a letter and has a-z and 0-9");
+    return fail(
+        "target-extension", {},
+        fmt::format("the target '{}': files cannot end in '{}'", target.name, printable(target.extension)),
+        "an extension begins with a letter and has a-z and 0-9");
   const auto like = static_cast<size_t>(target.like);
   const bool text = like < all.size() && (all[like].dialect != nullptr || all[like].stage != nullptr);
   if (!text || all[like].change)
-    return fail("target-like", {}, "there is no text to begin from",
-                "`like` is a target of the library with a text of each stage");
+    return fail("target-like", {},
+                fmt::format("the target '{}': `like` has no text to begin from", target.name),
+                "`like` is a target of the library with a text of each stage: not SPIR-V, C++ or JavaScript");
   if (all.size() >= kMost)
     return fail("too-many-targets", {}, fmt::format("there are {} targets", kMost),
                 "that is as many as there may be");
-  return checkWords(target.words);
+  return checkWords(target);
 }
 
-/// All that its code depends on.
+/// All that its code depends on, and of a check, which is a function that nothing can be compared with, that
+/// it is another one in each process: so no other run's answer is taken for its own.
 std::string identityOf(const Registered& target) {
   std::string all;
   const auto add = [&](std::string_view text) {
@@ -90,6 +100,8 @@ std::string identityOf(const Registered& target) {
     add(from);
     add(to);
   }
+  std::random_device random;
+  for (int i = 0; i < 4 && target.check; ++i) appendNumber(all, random());
   return hexOf(digestOf(all));
 }
 
