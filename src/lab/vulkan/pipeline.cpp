@@ -156,9 +156,9 @@ void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint3
   const VkViewport area{0, 0, side, side, 0, 1};
   FixedState state({{0, vertexStride(), VK_VERTEX_INPUT_RATE_VERTEX}}, attributesOf(fragment_), outputs(),
                    &area);
-  // Vulkan applies no logical operation to float32 (Vulkan 1.3, 29.2), so colours stay the same. But llvmpipe
-  // then compiles a shader once, and not a second time for tiles that are covered whole: those matter to a
-  // sweep's time alone.
+  // Vulkan applies no logical operation to float32 (Vulkan 1.3, "Logical Operations"), so colours stay the
+  // same. But llvmpipe then compiles a shader once, and not a second time for tiles that are covered whole.
+  // A sweep, whose time is measured, keeps both.
   const bool once = device_.processor && device_.logic && side_ == kSide;
   state.blend.logicOpEnable = once ? VK_TRUE : VK_FALSE;
   state.blend.logicOp = VK_LOGIC_OP_COPY;
