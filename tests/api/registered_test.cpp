@@ -212,7 +212,7 @@ Report reportOfChecked(const std::string& said, const std::filesystem::path& fol
                   messages);
 }
 
-/// Nothing can tell one check from another: what another program's said of the same text does not count.
+/// Checks cannot be compared: what another process's check said of the same text does not count.
 TEST(Registered, ACheckIsAskedInEachProcess) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "lacquer-checked";

@@ -78,8 +78,8 @@ void Coder::print(const std::string& id, Distinct& shader, const std::vector<Tar
     Diagnostics& found = wrong[static_cast<size_t>(target)];
     code.validated =
         options.validate && hasValidator(target, hasArrays(shader.structure->reflection)) && found.empty();
-    // What is not valid is our bug, and is said again in every run. What a check of one's own says is asked
-    // in each process.
+    // Invalid code is our bug, and every run says so again. A registered target's check is asked in each
+    // process.
     if (found.empty() && !targets::row(target).check) save(keyOf(id, target), code);
     std::move(found.begin(), found.end(), std::back_inserter(made.wrong));
   }

@@ -86,8 +86,8 @@ Result<void> check(const Registered& target) {
   return checkWords(target);
 }
 
-/// All that its code depends on, and of a check, which is a function that nothing can be compared with, that
-/// it is another one in each process: so no other run's answer is taken for its own.
+/// All that the target's code depends on. Functions cannot be compared, so a check adds random numbers:
+/// nothing that the cache or a receipt has of another process belongs to this target.
 std::string identityOf(const Registered& target) {
   std::string all;
   const auto add = [&](std::string_view text) {

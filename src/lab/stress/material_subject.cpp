@@ -224,7 +224,7 @@ private:
     return {samples.data() + space.find(variable)->first, space.width(), lanes};
   }
 
-  /// Where neighbours lie, and their texture coordinates.
+  /// Adds where neighbours lie, and their texture coordinates.
   void step(std::span<const double> samples, eval::PointColumns& points) const {
     const auto put = [&](std::string_view column, int components, Numbers dx, Numbers dy) {
       const auto n = static_cast<size_t>(components);
@@ -242,6 +242,7 @@ private:
     }
   }
 
+  /// `count` points, `lanes` of which are of one sample.
   eval::PointColumns pointsOf(std::span<const double> samples, size_t count) const {
     eval::PointColumns points{count, {}};
     const auto put = [&](std::string_view column, int components, const auto& write) {
@@ -278,7 +279,6 @@ private:
     return points;
   }
 
-  /// `count` points, `lanes` of which are of one sample.
   eval::Bindings bind(std::span<const double> samples, size_t count) const {
     eval::Bindings bindings;
     bindings.quads = lanes > 1;

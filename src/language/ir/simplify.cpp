@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <span>
 
@@ -258,13 +259,14 @@ ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
     ValueId source;
     int index;
   };
-  std::array<Pick, 16> storage;  // of a Mat4
+  std::array<Pick, 16> storage;  // a Mat4 has the most components
   size_t count = 0;
   for (const ValueId part : parts) {
     const Value value = dag_[part];
     for (int i = 0; i < componentCount(value.type); ++i) {
       const ValueId scalar = componentCount(value.type) == 1 ? part : dag_.component(part, i);
       const Value s = dag_[scalar];
+      assert(count < storage.size());
       storage[count++] =
           s.op == Op::Swizzle ? Pick{s.args[0], swizzleComponent(s.payload, 0)} : Pick{scalar, 0};
     }

@@ -47,7 +47,7 @@ public:
   }
 
 private:
-  /// Of sources_.
+  /// A range of sources_.
   struct Places {
     size_t begin, end;
   };
@@ -134,8 +134,8 @@ private:
   const Body& body_;
   const Source* also_;
   std::vector<std::pair<size_t, size_t>> found_;  ///< of a node: a parameter's place, and its source's
-  std::vector<size_t> sources_;                   ///< of one node after the other
-  std::vector<std::optional<Places>> by_node_;    ///< where they were asked for
+  std::vector<size_t> sources_;                   ///< the nodes' sources, node by node
+  std::vector<std::optional<Places>> by_node_;    ///< each node's sources, once they were asked for
 };
 
 }  // namespace
