@@ -104,6 +104,13 @@ namespace {
 
 Vec3 toVec3(const environment::Rgb& color) { return {color[0], color[1], color[2]}; }
 
+/// The contact sheets' studio, made once: its harmonics are an integral over the sphere, and each ball is
+/// drawn in a studio of its own.
+const Studio& standard() {
+  static const Studio studio(sheetStudio());
+  return studio;
+}
+
 }  // namespace
 
 Studio::Studio(environment::Maps maps) : maps_(std::make_shared<const environment::Maps>(std::move(maps))) {}
@@ -136,7 +143,7 @@ Vec3 Studio::radiance(const Vec3& direction, double roughness) const {
   return result;
 }
 
-Studio::Studio() : Studio(sheetStudio()) {}
+Studio::Studio() : Studio(standard()) {}
 
 Studio::Studio(Surroundings around, double turn) : around_(std::move(around)) {
   for (Softbox& box : around_.boxes) box.to = turned(box.to, turn);
