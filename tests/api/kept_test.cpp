@@ -13,7 +13,7 @@
 namespace lacquer::test {
 namespace {
 
-constexpr const char* kDocument = R"(<materialx version="1.38" fileprefix="maps/">
+constexpr const char* kKept = R"(<materialx version="1.38" fileprefix="maps/">
   <xi:include href="parts.mtlx"/>
   <nodegraph name="NG">
     <mix name="half" type="color3">
@@ -107,7 +107,7 @@ TEST_F(Kept, AnIncludedFileHasNoColourSpaceOfTheDocument) {
 }
 
 TEST_F(Kept, DocumentsAreWrittenAsTheyWereRead) {
-  const Scene scene = read(kDocument);
+  const Scene scene = read(kKept);
   ASSERT_TRUE(scene);
   const std::string text = written(scene);
   // 1.38, brought to what is written today.
@@ -125,7 +125,7 @@ TEST_F(Kept, DocumentsAreWrittenAsTheyWereRead) {
 }
 
 TEST_F(Kept, SomeMaterialsAreWrittenWithWhatTheyTake) {
-  const Scene scene = read(kDocument);
+  const Scene scene = read(kKept);
   ASSERT_TRUE(scene);
   const std::string metal = written(scene, {"Metal"});
   EXPECT_TRUE(has(metal, "<gltf_pbr name=\"metal\"")) << metal;
@@ -219,7 +219,7 @@ TEST_F(Kept, APatternOfSeveralIsTaken) {
 }
 
 TEST_F(Kept, EditedNumbersAreWritten) {
-  const Scene scene = read(kDocument);
+  const Scene scene = read(kKept);
   ASSERT_TRUE(scene);
   Graph graph = scene.graph(1, kUnusedAttributes, {}, messages_);
   ASSERT_TRUE(graph);
@@ -248,7 +248,7 @@ TEST_F(Kept, EditedNumbersAreWritten) {
 }
 
 TEST_F(Kept, AnotherSurfaceIsTranslated) {
-  const Scene scene = read(kDocument);
+  const Scene scene = read(kKept);
   ASSERT_TRUE(scene);
   const std::string text = written(scene, {"Paint"}, "gltf_pbr");
   EXPECT_TRUE(has(text, "<gltf_pbr")) << text;
@@ -259,7 +259,7 @@ TEST_F(Kept, AnotherSurfaceIsTranslated) {
 }
 
 TEST_F(Kept, AnEvaluationNamesTheFormulas) {
-  const Scene own = read(kDocument);
+  const Scene own = read(kKept);
   constexpr const char* kPoint = R"([{"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0, 0]}])";
   const auto by_own = evaluate(own, 1, kPoint, Engine::Double, {}, {}, messages_);
   ASSERT_TRUE(by_own) << said();
@@ -267,7 +267,7 @@ TEST_F(Kept, AnEvaluationNamesTheFormulas) {
   Options options;
   options.as = "gltf";
   options.document_texts = {{"parts.mtlx", kParts}};
-  const Scene translated = Scene::fromMemory(kDocument, "paint.mtlx", options, messages_);
+  const Scene translated = Scene::fromMemory(kKept, "paint.mtlx", options, messages_);
   const auto by_gltf = evaluate(translated, 1, kPoint, Engine::Double, {}, options, messages_);
   ASSERT_TRUE(by_gltf) << said();
   EXPECT_NE(by_gltf->profile, "materialx");

@@ -14,9 +14,9 @@ namespace lacquer::test {
 
 namespace {
 
-struct Row {
+struct HelpRow {
   std::string flags, argument, meaning;
-  bool operator==(const Row&) const = default;
+  bool operator==(const HelpRow&) const = default;
 };
 
 std::string helpOf(const std::string& verb) {
@@ -41,10 +41,10 @@ std::string helpOf(const std::string& verb) {
 }
 
 /// "--target TEXT ..." is its flags and its argument.
-Row rowOf(const std::string& left) {
+HelpRow rowOf(const std::string& left) {
   const std::string bare = left.substr(left.find_first_not_of(' '));
   const size_t blank = std::min(bare.find(' '), bare.size());
-  Row row{bare.substr(0, blank), bare.substr(std::min(blank + 1, bare.size())), {}};
+  HelpRow row{bare.substr(0, blank), bare.substr(std::min(blank + 1, bare.size())), {}};
   row.argument = row.argument.substr(0, row.argument.find(" Excludes:"));
   const size_t comma = row.flags.find(',');
   if (comma != std::string::npos)
@@ -52,15 +52,15 @@ Row rowOf(const std::string& left) {
   return row;
 }
 
-bool isEverywhere(const Row& row) {
+bool isEverywhere(const HelpRow& row) {
   return row.flags.find("--help") != std::string::npos || row.flags == "--version";
 }
 
 /// The rows below "Positionals:" and "Options:": flags to the left, the meaning from column 30 on or on the
 /// next line.
-std::vector<Row> rowsOf(const std::string& verb) {
+std::vector<HelpRow> rowsOf(const std::string& verb) {
   constexpr size_t kColumn = 30;
-  std::vector<Row> rows;
+  std::vector<HelpRow> rows;
   bool inside = false;
   for (const std::string& line : split(helpOf(verb), "\n")) {
     if (line.empty() || line[0] != ' ') {
@@ -81,33 +81,33 @@ std::vector<Row> rowsOf(const std::string& verb) {
   return rows;
 }
 
-std::vector<Row> common(const std::vector<Row>& a, const std::vector<Row>& b) {
-  std::vector<Row> both;
+std::vector<HelpRow> common(const std::vector<HelpRow>& a, const std::vector<HelpRow>& b) {
+  std::vector<HelpRow> both;
   std::copy_if(a.begin(), a.end(), std::back_inserter(both),
-               [&](const Row& row) { return std::find(b.begin(), b.end(), row) != b.end(); });
+               [&](const HelpRow& row) { return std::find(b.begin(), b.end(), row) != b.end(); });
   return both;
 }
 
-std::vector<Row> without(const std::vector<Row>& a, const std::vector<Row>& b) {
-  std::vector<Row> rest;
+std::vector<HelpRow> without(const std::vector<HelpRow>& a, const std::vector<HelpRow>& b) {
+  std::vector<HelpRow> rest;
   std::copy_if(a.begin(), a.end(), std::back_inserter(rest),
-               [&](const Row& row) { return std::find(b.begin(), b.end(), row) == b.end(); });
+               [&](const HelpRow& row) { return std::find(b.begin(), b.end(), row) == b.end(); });
   return rest;
 }
 
-std::vector<Row> sharedRows() { return common(common(rowsOf("gen"), rowsOf("graph")), rowsOf("dump")); }
+std::vector<HelpRow> sharedRows() { return common(common(rowsOf("gen"), rowsOf("graph")), rowsOf("dump")); }
 
 /// Whether a verb has all options that several share, or others of their names.
-bool takesShared(const std::vector<Row>& rows) {
-  const std::vector<Row> shared = sharedRows();
-  return std::all_of(shared.begin(), shared.end(), [&](const Row& row) {
-    return std::any_of(rows.begin(), rows.end(), [&](const Row& own) { return own.flags == row.flags; });
+bool takesShared(const std::vector<HelpRow>& rows) {
+  const std::vector<HelpRow> shared = sharedRows();
+  return std::all_of(shared.begin(), shared.end(), [&](const HelpRow& row) {
+    return std::any_of(rows.begin(), rows.end(), [&](const HelpRow& own) { return own.flags == row.flags; });
   });
 }
 
 /// What the program's help has of its verbs.
-std::vector<Row> verbRows() {
-  std::vector<Row> rows;
+std::vector<HelpRow> verbRows() {
+  std::vector<HelpRow> rows;
   bool inside = false;
   for (const std::string& line : split(helpOf(""), "\n")) {
     if (inside && line.starts_with("  ")) rows.push_back(rowOf(line));
@@ -119,37 +119,37 @@ std::vector<Row> verbRows() {
 }  // namespace
 
 std::string optionsTable(std::string_view of) {
-  const std::vector<Row> shared = sharedRows();
-  const std::vector<Row> generation = without(common(rowsOf("gen"), rowsOf("plan")), shared);
-  const std::vector<Row> all = rowsOf(of == "shared" || of == "generation" ? "gen" : std::string(of));
+  const std::vector<HelpRow> shared = sharedRows();
+  const std::vector<HelpRow> generation = without(common(rowsOf("gen"), rowsOf("plan")), shared);
+  const std::vector<HelpRow> all = rowsOf(of == "shared" || of == "generation" ? "gen" : std::string(of));
   // What stands in the tables above.
-  std::vector<Row> known;
+  std::vector<HelpRow> known;
   if (of != "gen" && of != "plan") known = common(all, generation);
   if (!takesShared(all)) {
-    const std::vector<Row> some = common(all, shared);
+    const std::vector<HelpRow> some = common(all, shared);
     known.insert(known.end(), some.begin(), some.end());
   }
-  for (const Row& row : without(without(rowsOf("eval"), shared), known)) {
+  for (const HelpRow& row : without(without(rowsOf("eval"), shared), known)) {
     const bool trial = of != "eval" && row.flags.starts_with("--") && row.flags != "--material";
     if (trial && std::find(all.begin(), all.end(), row) != all.end()) known.push_back(row);
   }
-  std::vector<Row> rows = without(without(without(all, shared), generation), known);
+  std::vector<HelpRow> rows = without(without(without(all, shared), generation), known);
   if (of == "shared") rows = shared;
   if (of == "generation") rows = generation;
   if (rows.empty()) ADD_FAILURE() << of << " has no options of its own";
   std::string out = "| option | argument | meaning |\n|---|---|---|\n";
-  for (const Row& row : rows) {
+  for (const HelpRow& row : rows) {
     out += fmt::format("| `{}` | {} | {} |\n", row.flags, row.argument, row.meaning);
   }
   if (known.empty() || of == "shared" || of == "generation") return out;
   std::string flags;
-  for (const Row& row : known) flags += (flags.empty() ? "`" : "`, `") + row.flags;
+  for (const HelpRow& row : known) flags += (flags.empty() ? "`" : "`, `") + row.flags;
   return out + fmt::format("| {}` | | as above |\n", flags);
 }
 
 std::string takersLine() {
   std::vector<std::string> verbs;
-  for (const Row& row : verbRows()) {
+  for (const HelpRow& row : verbRows()) {
     if (takesShared(rowsOf(row.flags))) verbs.push_back(fmt::format("`{}`", row.flags));
   }
   if (verbs.size() < 2) return {};
@@ -161,7 +161,7 @@ std::string takersLine() {
 
 std::string verbsTable() {
   std::string out = "| verb | what it gives |\n|---|---|\n";
-  for (const Row& row : verbRows()) {
+  for (const HelpRow& row : verbRows()) {
     out += fmt::format("| [`{0}`](#{0}) | {1} |\n", row.flags,
                        row.argument.substr(row.argument.find_first_not_of(' ')));
   }

@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
 
-struct Type {
+struct DeclaredType {
   spv::Op op = spv::OpNop;
   uint32_t element = 0;  ///< of vectors, matrices, arrays, pointers
   uint32_t count = 1;
@@ -202,7 +202,7 @@ private:
     Pointer p = pointers_.at(in.args[2]);
     for (size_t i = 3; i < in.count; ++i) {
       const auto index = static_cast<uint32_t>(scalar(in.args[i]));
-      const Type& type = types_.at(p.type);
+      const DeclaredType& type = types_.at(p.type);
       if (type.op == spv::OpTypeStruct) {
         const auto offset = offsets_.find({p.type, index});
         p.offset += offset == offsets_.end() ? 0 : offset->second;
@@ -235,7 +235,7 @@ private:
     };
     if (const auto local = locals_.find(from.variable); local != locals_.end()) return take(local->second);
     const Variable& variable = variables_.at(from.variable);
-    const Type& type = types_.at(from.type);
+    const DeclaredType& type = types_.at(from.type);
     if (type.op == spv::OpTypeSampledImage) {
       textures_[id] = from.variable;
       return;
@@ -379,7 +379,7 @@ private:
   const World& world_;
   std::vector<Instruction> code_;
   std::map<uint32_t, size_t> labels_;
-  std::map<uint32_t, Type> types_;
+  std::map<uint32_t, DeclaredType> types_;
   std::map<uint32_t, Variable> variables_;
   std::map<uint32_t, Pointer> pointers_;
   std::map<uint32_t, Cell> locals_;

@@ -114,7 +114,7 @@ Ref EGraph::make(Op op, std::initializer_list<Ref> operands, uint32_t payload) {
   const std::optional<Type> type = typeOf(node);
   if (!type) return kNoRef;
   node.type = *type;
-  node.rate = rateOf(op, {rates.data(), node.count});
+  node.rate = rateOf(op, {rates.data(), k});
   return add(node);
 }
 

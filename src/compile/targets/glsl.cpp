@@ -28,8 +28,8 @@ struct GlslRow {
   bool storage;            ///< storage buffers; without them lists are textures
 };
 
-constexpr GlslRow kVulkan = {"450", true, true, true, false, true, true, true};
-constexpr GlslRow kOpenGl = {"450", false, true, true, false, false, false, true};
+constexpr GlslRow kGlslVulkan = {"450", true, true, true, false, true, true, true};
+constexpr GlslRow kGlslOpenGl = {"450", false, true, true, false, false, false, true};
 constexpr GlslRow kEssl300 = {"300 es", false, false, false, true, true, false, false};
 
 class Glsl final : public Dialect {
@@ -304,12 +304,12 @@ private:
 }  // namespace
 
 const Dialect& glslVulkan() {
-  static const Glsl dialect(kVulkan);
+  static const Glsl dialect(kGlslVulkan);
   return dialect;
 }
 
 const Dialect& glslOpenGl() {
-  static const Glsl dialect(kOpenGl);
+  static const Glsl dialect(kGlslOpenGl);
   return dialect;
 }
 

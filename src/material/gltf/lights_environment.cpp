@@ -12,7 +12,6 @@ namespace lacquer::gltf {
 namespace {
 
 constexpr std::string_view kKtx2 = "image/ktx2";
-constexpr double kMostLayers = 2048;
 constexpr double kFarthestCorner = 1e6;  ///< of a box's corners, as the shaders' block has it
 
 /// One of the two spellings of a member.
@@ -167,10 +166,11 @@ private:
     if (const Json* layer = member(cube, "layer")) {
       const Path at(here, "layer");
       if (const std::optional<double> whole = report_.wholeNumber(at, "layer", *layer, "a whole number");
-          whole && *whole >= 0 && *whole < kMostLayers) {
+          whole && *whole >= 0 && *whole <= kLastLayer) {
         made.layer = static_cast<uint32_t>(*whole);
       } else if (whole) {
-        report_.error("out-of-range", at, fmt::format("layer is {}", *whole), "it is from 0 to 2047");
+        report_.error("out-of-range", at, fmt::format("layer is {}", *whole),
+                      fmt::format("it is from 0 to {}", kLastLayer));
       }
     }
     image(cube, here, made);

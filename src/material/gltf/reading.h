@@ -13,6 +13,9 @@
 
 namespace lacquer::gltf {
 
+/// The last layer of an array of textures that every device takes.
+inline constexpr int kLastLayer = 2047;
+
 /// What the readers share: the whole file, where its facts go, and where what is wrong with it goes.
 struct Reading {
   const Json& root;

@@ -19,7 +19,6 @@ constexpr std::string_view kImageExtensions[] = {"KHR_texture_basisu", "EXT_text
 /// Its options give a texture channels of images.
 constexpr std::string_view kSwizzle = "NV_texture_swizzle";
 constexpr int kMostChannels = 255;  ///< more than any container of textures has
-constexpr int kMostLayers = 2047;   ///< as many as every device takes
 
 constexpr int kWraps[] = {33071, 33648, 10497};
 constexpr int kMagFilters[] = {9728, 9729};
@@ -90,9 +89,9 @@ void readSwizzle(const Json& option, size_t images, const Path& path, Report& re
   if (const Json* layer = member(option, "arrayLayer")) {
     const Path here(path, "arrayLayer");
     const std::optional<double> whole = report.wholeNumber(here, "arrayLayer", *layer, "a whole number");
-    if (whole && (*whole < 0 || *whole > kMostLayers)) {
+    if (whole && (*whole < 0 || *whole > kLastLayer)) {
       report.error("out-of-range", here, fmt::format("arrayLayer is {}", *whole),
-                   fmt::format("it must be from 0 to {}", kMostLayers));
+                   fmt::format("it must be from 0 to {}", kLastLayer));
       good = false;
     }
     good = good && whole;
