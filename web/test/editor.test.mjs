@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { begin, downloaded, drop, end, folder, library, middle, open, set } from './page.mjs';
+import { begin, downloaded, drop, end, folder, kWide, library, middle, open, set } from './page.mjs';
 import { lacquer, read } from './native.mjs';
 
 before(begin);
@@ -102,7 +102,7 @@ test("the README's glow node, made with the mouse: a search, wires, a swizzle th
     while (await page.isEnabled('#undo')) await page.click('#undo');
     assert.equal(await page.textContent('#id'), before);
     assert.equal(await graphNow(page), null);
-  }));
+  }, { size: kWide }));
 
 const focusedPort = (page) => page.evaluate(() => {
   const { port, side } = document.activeElement.dataset;
@@ -247,7 +247,7 @@ test('where only a node between would do, it is offered and put there', () =>
     assert.deepEqual(await inputsOf(page, 'gltf_image_vec4'), { file: { texture: 'normal_texture' } });
     assert.deepEqual((await inputsOf(page, 'base.color')).texel, { node: 'gltf_image_vec4' });
     assert.equal(await page.textContent('#status'), '');
-  }));
+  }, { size: kWide }));
 
 test('the palette finds nodes by name, by prose and by category, says what they take, and at a port offers what fits it', () =>
   open(['examples/clearcoat.gltf'], async (page) => {

@@ -63,4 +63,4 @@ test('the texts on the page are those of `lacquer gen`', () => withExamples(Obje
       }
     }
     assert.ok(compared > 60);
-  })));
+  }, { size: kSmall })));

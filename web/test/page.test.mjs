@@ -8,7 +8,7 @@ import { pathToFileURL } from 'node:url';
 import { hasWebGpu, kPatience, kWebGpu, launch, serve } from './browser.mjs';
 import { glb, lacquer, output, read, realFiles, withExamples } from './native.mjs';
 import {
-  begin, downloaded, drop, end, folder, kSmall, library, middle, open, painted, set, settled,
+  begin, downloaded, drop, end, folder, kSmall, kWide, library, middle, open, painted, set, settled,
 } from './page.mjs';
 
 before(begin);
@@ -41,7 +41,7 @@ test('its header is one line, whatever the names', () =>
     });
     assert.ok(height < 50, `${height} pixels high`);
     assert.ok(wide <= room, `${wide} of ${room} pixels`);
-  }));
+  }, { size: kWide }));
 
 test('drop, edit, undo, export and reload', () =>
   open([], async (page) => {
@@ -348,7 +348,7 @@ test('WebGPU draws what WebGL 2 draws', async (t) => {
       }
       await page.selectOption('#painter', 'webgl');
       assert.ok(await page.isVisible('#viewport'));
-    }, { by });
+    }, { by, size: kWide });
   } finally {
     await by.close();
   }
