@@ -31,7 +31,7 @@ MslBinding mslArray(const ir::Binding& binding) {
 namespace {
 
 /// MSL 2.1: macOS 10.14 and iOS 12, the first that Metal's tools still take for what argument buffers want.
-constexpr unsigned kVersion = SPVC_MAKE_MSL_VERSION(2, 1, 0);
+constexpr unsigned kMslVersion = SPVC_MAKE_MSL_VERSION(2, 1, 0);
 
 using Context = std::unique_ptr<spvc_context_s, decltype(&spvc_context_destroy)>;
 
@@ -62,7 +62,7 @@ private:
       return spvc_compiler_options_set_uint(options, option, value) == SPVC_SUCCESS;
     };
     return spvc_compiler_create_compiler_options(compiler_, &options) == SPVC_SUCCESS &&
-           set(SPVC_COMPILER_OPTION_MSL_VERSION, kVersion) &&
+           set(SPVC_COMPILER_OPTION_MSL_VERSION, kMslVersion) &&
            set(SPVC_COMPILER_OPTION_MSL_ARGUMENT_BUFFERS, argument_buffers_ ? 1 : 0) &&
            // Without it, a stage's buffer would lack what the stage does not read.
            set(SPVC_COMPILER_OPTION_MSL_FORCE_ACTIVE_ARGUMENT_BUFFER_RESOURCES, argument_buffers_ ? 1 : 0) &&
