@@ -26,7 +26,7 @@ export async function end() {
   if (folder) rmSync(folder, { recursive: true });
 }
 
-/** Sizes of windows. Software draws the picture: a third of the pixels takes a third less of a test's time. */
+/** Sizes of windows. Software draws the picture: with half of the pixels a test takes some third less. */
 export const kSmall = { width: 960, height: 360 };
 const kUsual = { width: 1120, height: 640 };
 /** For what needs the room: large graphs, long names, pictures that are not mostly edges. */
