@@ -327,6 +327,7 @@ const Wrong kWrong[] = {
      "/cubemaps/1/source: error: source 7 is out of range"},
     {"a layer that is not there", [](json& j) { cubeOf(j)["layer"] = 2; }, "the KTX2 file has no cube map 2"},
     {"a layer below all", [](json& j) { cubeOf(j)["layer"] = -1; }, "/layer: error: layer is -1"},
+    {"a layer beyond all", [](json& j) { cubeOf(j)["layer"] = 2048; }, "/layer: error: layer is 2048"},
     {"a negative intensity", [](json& j) { cubeOf(j)["intensity"] = -1; },
      "/intensity: error: intensity is -1"},
     {"eight coefficients",
